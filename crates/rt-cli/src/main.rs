@@ -1,0 +1,4 @@
+//! The command `rt`.
+#![forbid(unsafe_code)]
+
+fn main() {}

@@ -1,0 +1,89 @@
+//! Functions compiled twice: with fused multiply-add and without, chosen at run time.
+
+use super::{Level, level};
+
+/// How the exact product of two numbers is computed: the one thing that differs between instruction sets.
+pub trait Product: Copy {
+    /// `(p, e)` with `p = fl(a * b)` and `p + e = a * b` exactly, provided `|a|, |b| < 2^995` and
+    /// `|a * b| >= 2^-968` or zero.
+    fn two_product(a: f64, b: f64) -> (f64, f64);
+}
+
+/// Products by fused multiply-add. Only inside a [`Task`] that [`run`] chose it for: elsewhere `mul_add` is a slow
+/// library call (with the same result).
+#[derive(Clone, Copy, Debug)]
+pub struct Fused;
+
+impl Product for Fused {
+    #[inline(always)]
+    fn two_product(a: f64, b: f64) -> (f64, f64) {
+        let p = a * b;
+        (p, fused(a, b, -p))
+    }
+}
+
+#[inline(always)]
+fn fused(a: f64, b: f64, c: f64) -> f64 {
+    #[cfg(any(feature = "std", test))]
+    return a.mul_add(b, c);
+    #[cfg(not(any(feature = "std", test)))]
+    return libm::fma(a, b, c);
+}
+
+/// Products by Veltkamp's splitting and Dekker's algorithm (Dekker 1971, doi:10.1007/BF01397083).
+#[derive(Clone, Copy, Debug)]
+pub struct Dekker;
+
+impl Product for Dekker {
+    #[inline(always)]
+    fn two_product(a: f64, b: f64) -> (f64, f64) {
+        let p = a * b;
+        let (ah, al) = split(a);
+        let (bh, bl) = split(b);
+        (p, ((ah * bh - p) + ah * bl + al * bh) + al * bl)
+    }
+}
+
+/// `a` as a sum of two numbers of at most 26 bits each (Veltkamp's splitting by 2^27 + 1).
+#[inline(always)]
+fn split(a: f64) -> (f64, f64) {
+    const SPLITTER: f64 = 134_217_729.0;
+    let c = SPLITTER * a;
+    let high = c - (c - a);
+    (high, a - high)
+}
+
+/// A piece of arithmetic that is generic over the exact product.
+///
+/// Implement [`run`](Task::run) with `#[inline(always)]`: it is then compiled once for each instruction set.
+pub trait Task {
+    /// What the piece computes.
+    type Output;
+    /// Computes it with this kind of product.
+    fn run<P: Product>(self) -> Self::Output;
+}
+
+/// Runs the task with fused multiply-add where the machine has it, otherwise with Dekker's products.
+#[inline(always)]
+pub fn run<T: Task>(task: T) -> T::Output {
+    #[cfg(all(target_arch = "x86_64", feature = "std"))]
+    if level() >= Level::Avx2 {
+        // SAFETY: the level is Avx2 only after run-time detection of AVX2 and FMA on this machine.
+        return unsafe { run_fused(task) };
+    }
+    #[cfg(not(all(target_arch = "x86_64", feature = "std")))]
+    let _ = (level, Level::Avx2);
+    task.run::<Dekker>()
+}
+
+/// Runs the task with Dekker's products, whatever the machine has.
+#[inline]
+pub fn run_portable<T: Task>(task: T) -> T::Output {
+    task.run::<Dekker>()
+}
+
+#[cfg(all(target_arch = "x86_64", feature = "std"))]
+#[target_feature(enable = "avx2,fma")]
+fn run_fused<T: Task>(task: T) -> T::Output {
+    task.run::<Fused>()
+}

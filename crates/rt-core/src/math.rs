@@ -1,0 +1,23 @@
+//! The few functions that `core` lacks. All of them are exact or portable: the same bits on every platform.
+
+/// The square root, correctly rounded.
+#[inline(always)]
+pub(crate) fn sqrt(x: f64) -> f64 {
+    #[cfg(any(feature = "std", test))]
+    return x.sqrt();
+    #[cfg(not(any(feature = "std", test)))]
+    return libm::sqrt(x);
+}
+
+/// Two to the power of `exponent`, exactly, for `-1022 <= exponent <= 1023`.
+#[inline(always)]
+pub(crate) const fn exp2i(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}
+
+/// The exponent `e` with `2^e <= |x| < 2^(e+1)` of a normal number; -1023 for zero and subnormal numbers, 1024 for
+/// infinities and NaN.
+#[inline(always)]
+pub(crate) const fn exponent(x: f64) -> i32 {
+    ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
+}

@@ -1,0 +1,142 @@
+//! Similarities: scale, then turn, then move.
+
+use crate::Error;
+use glam::{DMat3, DVec3};
+
+/// The map `p -> rotation * (scale * p) + translation`, about the world's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    scale: f64,
+    rotation: DMat3,
+    translation: DVec3,
+}
+
+impl Similarity {
+    /// The map that changes nothing.
+    pub const IDENTITY: Similarity =
+        Similarity { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
+
+    /// Scales by `scale`.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`] unless the scale is positive and finite.
+    pub fn scaled(mut self, scale: f64) -> Result<Self, Error> {
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(Error::NotPositive { what: "scale", value: scale });
+        }
+        self.scale *= scale;
+        self.translation *= scale;
+        Ok(self)
+    }
+
+    /// Turns by `degrees` about `axis` (any length but zero), counter-clockwise as seen against the axis
+    /// (right-handed). Multiples of 90 degrees about a coordinate axis are exact.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ZeroLength`] for the axis, [`Error::NotFinite`] for the angle.
+    pub fn rotated(mut self, axis: impl Into<DVec3>, degrees: f64) -> Result<Self, Error> {
+        let axis = axis.into();
+        if !axis.is_finite() {
+            return Err(Error::NotFinite { what: "rotation axis", value: axis });
+        }
+        if axis == DVec3::ZERO {
+            return Err(Error::ZeroLength { what: "rotation axis", value: axis });
+        }
+        if !degrees.is_finite() {
+            return Err(Error::NotFinite { what: "rotation angle", value: DVec3::splat(degrees) });
+        }
+        // Scale by a power of two first, so that no square under- or overflows.
+        let power = crate::math::exponent(axis.abs().max_element()).clamp(-1021, 1021);
+        let axis = (axis * crate::math::exp2i(-power)).normalize();
+        let (sin, cos) = sin_cos_degrees(degrees);
+        let turn = rotation_matrix(axis, sin, cos);
+        self.rotation = turn * self.rotation;
+        self.translation = turn * self.translation;
+        Ok(self)
+    }
+
+    /// Moves by `offset`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub fn translated(mut self, offset: impl Into<DVec3>) -> Result<Self, Error> {
+        let offset = offset.into();
+        if !offset.is_finite() {
+            return Err(Error::NotFinite { what: "translation", value: offset });
+        }
+        self.translation += offset;
+        Ok(self)
+    }
+
+    /// The factor on lengths.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The rotation, columns are the images of the axes.
+    pub fn rotation(&self) -> DMat3 {
+        self.rotation
+    }
+
+    /// What is added last.
+    pub fn translation(&self) -> DVec3 {
+        self.translation
+    }
+
+    /// The image of a point.
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        let scaled = p * self.scale;
+        let turned = if self.rotation == DMat3::IDENTITY { scaled } else { self.rotation * scaled };
+        turned + self.translation
+    }
+
+    /// The image of a direction: turned only.
+    pub fn direction(&self, d: DVec3) -> DVec3 {
+        if self.rotation == DMat3::IDENTITY { d } else { self.rotation * d }
+    }
+}
+
+/// Rodrigues' formula for a unit axis.
+fn rotation_matrix(u: DVec3, sin: f64, cos: f64) -> DMat3 {
+    let k = 1.0 - cos;
+    DMat3::from_cols(
+        DVec3::new(cos + u.x * u.x * k, u.x * u.y * k + u.z * sin, u.x * u.z * k - u.y * sin),
+        DVec3::new(u.x * u.y * k - u.z * sin, cos + u.y * u.y * k, u.y * u.z * k + u.x * sin),
+        DVec3::new(u.x * u.z * k + u.y * sin, u.y * u.z * k - u.x * sin, cos + u.z * u.z * k),
+    )
+}
+
+/// Sine and cosine of an angle in degrees, exact at multiples of 90.
+fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let turned = degrees % 360.0;
+    let quarters = libm::round(turned / 90.0);
+    // Exact: both are within a factor of two of each other, or the quarter is zero (Sterbenz).
+    let rest = turned - 90.0 * quarters;
+    let (s, c) = libm::sincos(rest.to_radians());
+    match (quarters as i32).rem_euclid(4) {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        let s = Similarity::IDENTITY.rotated(DVec3::Z, 90.0).unwrap();
+        assert_eq!(s.point(DVec3::X), DVec3::Y);
+        let s = Similarity::IDENTITY.rotated(DVec3::Y, -450.0).unwrap();
+        assert_eq!(s.point(DVec3::X), DVec3::Z);
+    }
+
+    #[test]
+    fn scale_then_rotate_then_translate() {
+        let s = Similarity::IDENTITY.scaled(2.0).unwrap().rotated([0.0, 0.0, 3.0], 90.0).unwrap();
+        let s = s.translated([1.0, 0.0, 0.0]).unwrap();
+        assert_eq!(s.point(DVec3::X), DVec3::new(1.0, 2.0, 0.0));
+    }
+}
