@@ -13,6 +13,7 @@ pub use glam;
 mod bounds;
 pub mod double;
 mod error;
+mod expansion;
 pub mod geometry;
 mod hit;
 pub mod kernel;
