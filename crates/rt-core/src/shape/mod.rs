@@ -5,6 +5,7 @@ mod cuboid;
 mod cylinder;
 mod disk;
 mod flat;
+mod frustum;
 mod plane;
 mod sphere;
 mod torus;
