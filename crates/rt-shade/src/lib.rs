@@ -3,3 +3,6 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use rt_core;
+
+#[cfg(feature = "text")]
+pub mod text;

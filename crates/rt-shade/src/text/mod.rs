@@ -1,0 +1,4 @@
+//! Scenes as text.
+
+pub mod shape;
+mod suggest;
