@@ -158,7 +158,14 @@ const KINDS: [Kind; 10] = [
     },
     Kind {
         word: "triangle",
-        fields: &[("a", Vector), ("b", Vector), ("c", Vector), ("na", Vector), ("nb", Vector), ("nc", Vector)],
+        fields: &[
+            ("a", Vector),
+            ("b", Vector),
+            ("c", Vector),
+            ("na", Vector),
+            ("nb", Vector),
+            ("nc", Vector),
+        ],
         required: 3,
         make: triangle,
     },
@@ -261,7 +268,9 @@ fn explain(kind: &str, fields: &[(&str, Value)], error: &Error) -> Problem {
     };
     // Of several fields with the offending value the one that the message names.
     let named = |what: &str| {
-        fields.iter().position(|f| what == f.0 || what.ends_with(&f.0.replace('_', " ")) || what.ends_with(f.0))
+        fields
+            .iter()
+            .position(|f| what == f.0 || what.ends_with(&f.0.replace('_', " ")) || what.ends_with(f.0))
     };
     let pick = |found: Option<(usize, bool)>, what: &str| match found {
         Some((index, true)) => Some(index),
