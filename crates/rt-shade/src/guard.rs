@@ -1,0 +1,1 @@
+//! Shapes and textures of a stranger, kept from doing harm.

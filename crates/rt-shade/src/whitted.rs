@@ -1,0 +1,1 @@
+//! Whitted's shading.
