@@ -4,6 +4,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod disk;
+mod frustum;
 mod plane;
 mod sphere;
 mod torus;
