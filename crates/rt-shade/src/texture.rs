@@ -188,7 +188,7 @@ fn neighbours(at: f64, count: u32, wraps: bool) -> (usize, usize, f64) {
     (place(a), place(b), x - first)
 }
 
-fn check_size(size: f64) -> Result<(), Error> {
+pub(crate) fn check_size(size: f64) -> Result<(), Error> {
     if size > 0.0 && size.is_finite() {
         Ok(())
     } else {
