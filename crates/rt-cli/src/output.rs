@@ -46,7 +46,8 @@ impl Output {
     pub fn check(path: &Path) -> Result<Output, Failure> {
         if path.as_os_str() == "-" {
             if io::stdout().is_terminal() {
-                let advice = "standard output is a terminal: send it to a file or a program, or name a file with -o";
+                let advice =
+                    "standard output is a terminal: send it to a file or a program, or name a file with -o";
                 return Err(Failure::Usage(advice.into()));
             }
             return Ok(Output::Stdout);
