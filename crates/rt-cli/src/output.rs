@@ -72,11 +72,6 @@ impl Output {
         Ok(Output::File { shown: path.into(), path: target })
     }
 
-    /// Whether this is standard output.
-    pub fn is_stdout(&self) -> bool {
-        matches!(self, Output::Stdout)
-    }
-
     /// The file that will be replaced, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {

@@ -172,11 +172,10 @@ fn settings(options: &Options, loaded: &Loaded) -> Result<(Settings, Option<Part
 
 /// What the parts of one picture have in common: the scene's text and every setting that pixels depend on.
 fn fingerprint(options: &Options, settings: &Settings, loaded: &Loaded) -> u64 {
-    let of_text = place::mix(place::EMPTY_HASH, &loaded.text);
     let Settings { width, height, max_depth, antialias, shadows, corners, cutoff, .. } = *settings;
     let region = options.region;
     let words = format!("{width} {height} {max_depth} {antialias} {shadows} {corners} {cutoff} {region:?}");
-    place::mix(of_text, words.as_bytes())
+    place::mix(loaded.hash, words.as_bytes())
 }
 
 fn stats(loaded: &Loaded, settings: &Settings, rendering: &Rendering, times: Times) -> String {
