@@ -111,7 +111,7 @@ impl ImageTexture {
     }
 }
 
-fn check_size(size: f64) -> Result<(), Error> {
+pub(crate) fn check_size(size: f64) -> Result<(), Error> {
     if size > 0.0 && size.is_finite() {
         Ok(())
     } else {

@@ -56,7 +56,10 @@ impl Diagnostics {
     pub fn of_file(file: &str, message: impl Into<String>) -> Diagnostics {
         let mut report = Report::new(file, "");
         report.error(0..0, message);
-        report.finish(()).err().unwrap_or(Diagnostics { errors: Vec::new(), more: 0 })
+        match report.finish_failed::<std::convert::Infallible>() {
+            Err(diagnostics) => diagnostics,
+            Ok(never) => match never {},
+        }
     }
 
     /// How many errors were found, those that were not kept included.
@@ -131,13 +134,26 @@ impl<'a> Report<'a> {
         self.found.is_empty()
     }
 
+    /// Whether a further error at the end of the file would only be counted.
+    pub(crate) fn is_full(&self) -> bool {
+        self.found.len() >= MOST_ERRORS
+    }
+
+    /// The errors, of which there is at least one.
+    pub(crate) fn finish_failed<T>(mut self) -> Result<T, Diagnostics> {
+        if self.is_clean() {
+            self.error(0..0, "the file cannot be read as a scene");
+        }
+        let errors = self.found.iter().map(|(span, message)| self.diagnostic(span, message)).collect();
+        Err(Diagnostics { errors, more: self.more })
+    }
+
     /// The value, or the errors if there were any.
     pub(crate) fn finish<T>(self, value: T) -> Result<T, Diagnostics> {
         if self.is_clean() {
             return Ok(value);
         }
-        let errors = self.found.iter().map(|(span, message)| self.diagnostic(span, message)).collect();
-        Err(Diagnostics { errors, more: self.more })
+        self.finish_failed()
     }
 
     fn diagnostic(&self, span: &Range<usize>, message: &str) -> Diagnostic {
