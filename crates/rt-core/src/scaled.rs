@@ -1,10 +1,10 @@
 //! Rays in a shape's own scale: exact powers of two that keep every product in range.
 
 use crate::Error;
-use crate::Ray;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
 use crate::math::{exp2i, exponent};
+use crate::{Hit, Interval, Ray};
 use glam::DVec3;
 
 /// `x * 2^k`, rounded once unless the result is subnormal, for any `|k| <= 3000`.
@@ -109,4 +109,21 @@ pub(crate) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, E
         return Err(Error::OutOfRange { what, value: largest(value) });
     }
     Ok(value)
+}
+
+/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it.
+#[inline(always)]
+pub(crate) fn admit(within: Interval, t: Double, part: u32, root: u32) -> Option<Hit> {
+    // `t` against an end: exact, since `high` is the nearest number to the sum.
+    let after = t.high > within.min || (t.high == within.min && t.low > 0.0);
+    let before = t.high < within.max || (t.high == within.max && t.low < 0.0);
+    if after && before { within.admit(t.high, part, root) } else { None }
+}
+
+/// The exit of a ray that starts on the shape and runs inside: a crossing at or before the start is the start's
+/// own rounding and counts as the next number after the start.
+#[inline]
+pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Option<Hit> {
+    let t = if t > 0.0 { t } else { 0.0 };
+    within.admit(if t > within.min { t } else { within.min.next_up() }, part, root)
 }

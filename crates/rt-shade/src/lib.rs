@@ -20,6 +20,8 @@ mod render;
 mod sample;
 mod scene;
 mod settings;
+#[cfg(feature = "image")]
+mod srgb;
 #[cfg(feature = "text")]
 pub mod text;
 mod texture;

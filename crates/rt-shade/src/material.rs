@@ -68,6 +68,14 @@ impl Default for Material {
 }
 
 impl Material {
+    /// Whether it spawns neither mirror nor transmitted rays.
+    #[inline]
+    pub(crate) fn is_matt(&self) -> bool {
+        self.reflect == 0.0
+            && self.transmit.is_black()
+            && (self.ior.is_none() || self.optics == Optics::Plain)
+    }
+
     /// Whether every number is legal: colours, `diffuse`, `specular` and `shininess` at least 0 and finite, `ior`
     /// greater than 0 and finite, `reflect` at least 0 and, with [`Optics::Fresnel`], at most 1.
     ///

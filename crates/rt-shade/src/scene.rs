@@ -1,6 +1,8 @@
 //! A checked scene, ready to be rendered.
 
 use crate::light::check_color;
+use crate::medium::Medium;
+use crate::texture::Mapping;
 use crate::{Camera, Color, Error, Light, Material, Paint, Texture};
 use rt_core::{Geometry, GeometryBuilder, Shape};
 
@@ -26,6 +28,23 @@ pub struct Scene {
     pub(crate) materials: Vec<Material>,
     pub(crate) objects: Vec<Object>,
     pub(crate) geometry: Geometry,
+    /// By object: what it leaves of the light of a lamp.
+    pub(crate) blocks: Vec<Blocks>,
+    /// By object: how its texture coordinates lead to a picture.
+    pub(crate) mappings: Vec<Mapping>,
+    /// The media that the eye is in.
+    pub(crate) around_eye: Vec<Medium>,
+}
+
+/// What an object leaves of the light of a lamp at each crossing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Blocks {
+    /// Nothing of it.
+    All,
+    /// A share of it.
+    Some(Color),
+    /// All of it.
+    Nothing,
 }
 
 impl Scene {
@@ -176,6 +195,23 @@ impl SceneBuilder {
                 return Err(Error::NoMaterial { object, material, count: self.materials.len() });
             }
         }
+        let blocks = self.objects.iter().map(|object| {
+            let transmit = self.materials[object.material as usize].transmit;
+            match object.no_shadow {
+                true => Blocks::Nothing,
+                false if transmit.is_black() => Blocks::All,
+                false if transmit == Color::WHITE => Blocks::Nothing,
+                false => Blocks::Some(transmit),
+            }
+        });
+        let blocks = blocks.collect();
+        let geometry = self.geometry.build();
+        let mappings = geometry.shapes().iter().map(|shape| match shape {
+            Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
+            Shape::Torus(_) => Mapping::Ring,
+            _ => Mapping::Sheet,
+        });
+        let mappings = mappings.collect();
         Ok(Scene {
             camera,
             background: self.background,
@@ -184,7 +220,10 @@ impl SceneBuilder {
             textures: self.textures,
             materials: self.materials,
             objects: self.objects,
-            geometry: self.geometry.build(),
+            geometry,
+            blocks,
+            mappings,
+            around_eye: Vec::new(),
         })
     }
 }
