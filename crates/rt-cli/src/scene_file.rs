@@ -1,7 +1,8 @@
 //! Reads a scene and its pictures from files.
 
 use crate::failure::Failure;
-use rt_shade::{Scene, Settings, text};
+use rt_shade::text::{self, Diagnostics, PictureLoader};
+use rt_shade::{Scene, Settings};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -32,7 +33,7 @@ pub struct Loaded {
 pub fn load(path: &Path) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let stdin = path.as_os_str() == "-";
-    let name = if stdin { "stdin.toml".into() } else { path.to_string_lossy() };
+    let name = if stdin { "<stdin>".into() } else { path.to_string_lossy() };
     let bytes = if stdin {
         read_at_most(io::stdin().lock(), LONGEST_SCENE)
     } else {
@@ -44,10 +45,21 @@ pub fn load(path: &Path) -> Result<Loaded, Failure> {
         _ => Path::new("."),
     };
     let pictures = |path: &str| read_picture(folder, path);
-    let loaded = text::load(&name, &bytes, &pictures);
+    let loaded = parse(&name, &bytes, &pictures);
     let text::Loaded { scene, settings, .. } = loaded.map_err(|errors| Failure::Input(errors.to_string()))?;
     let hash = crate::place::mix(crate::place::EMPTY_HASH, &bytes);
     Ok(Loaded { scene, settings, hash, load: start.elapsed(), build: Duration::ZERO })
+}
+
+/// Parses the scene; the file's ending tells the format.
+fn parse(name: &str, bytes: &[u8], pictures: &dyn PictureLoader) -> Result<text::Loaded, Diagnostics> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text::load_toml(name, text, pictures),
+        Err(error) => {
+            let at = error.valid_up_to();
+            Err(Diagnostics::of_file(name, format!("not UTF-8 text: byte {at} cannot be part of it")))
+        }
+    }
 }
 
 fn read_at_most(mut from: impl Read, most: u64) -> io::Result<Vec<u8>> {
