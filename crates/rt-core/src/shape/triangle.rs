@@ -11,6 +11,7 @@ use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
+use crate::scaled::{checked_point, largest, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
 use glam::{DVec2, DVec3};
@@ -28,7 +29,8 @@ pub struct Triangle {
     normal: DVec3,
     /// What rounding to `normal` left, so that both together are within 2^-104.
     normal_rest: DVec3,
-    /// The power of two between `normal` and the product of the edges.
+    /// The power of two between `normal` and the product of the edges; NaN where that is too large, so that no
+    /// comparison in `f64` is certain.
     area_scale: f64,
     /// The largest coordinate of the edges, in size.
     reach: f64,
@@ -43,9 +45,9 @@ impl Triangle {
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for coordinates beyond 1e150, [`Error::Degenerate`] when the corners
     /// lie exactly on a line.
     pub fn new(a: impl Into<DVec3>, b: impl Into<DVec3>, c: impl Into<DVec3>) -> Result<Self, Error> {
-        let a = flat::checked_point("triangle corner", a.into())?;
-        let b = flat::checked_point("triangle corner", b.into())?;
-        let c = flat::checked_point("triangle corner", c.into())?;
+        let a = checked_point("triangle corner", a.into())?;
+        let b = checked_point("triangle corner", b.into())?;
+        let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
         let (mut exact, power) = exact_normal(a, b, c);
         let rough = DVec3::from_array([0, 1, 2].map(|i| exact[i].to_double().high));
@@ -55,13 +57,14 @@ impl Triangle {
         let normal_power = flat::power_of(rough);
         exact.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
         let normal = exact.map(|n| n.to_double());
+        let area_power = 2 * power + normal_power;
         Ok(Triangle {
             a,
             b,
             c,
             normal: DVec3::from_array(normal.map(|n| n.high)),
             normal_rest: DVec3::from_array(normal.map(|n| n.low)),
-            area_scale: flat::scaled(1.0, 2 * power + normal_power),
+            area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
             reach,
             unit_normal: flat::unit(normal),
             smooth: None,
@@ -217,7 +220,7 @@ impl Task for Weights<'_> {
         let shift = self.at.power - power;
         let l = |i: usize| {
             let x: Double = self.at.local[i];
-            Double { high: flat::scaled(x.high, shift), low: flat::scaled(x.low, shift) }
+            Double { high: times_power(x.high, shift), low: times_power(x.low, shift) }
         };
         let across = |p: [Double; 2], q: [Double; 2]| p[0].mul::<P>(q[1]) - p[1].mul::<P>(q[0]);
         let (e1, e2, l) = ([e1(i), e1(j)], [e2(i), e2(j)], [l(i), l(j)]);
@@ -322,10 +325,4 @@ fn lesser(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn largest(v: DVec3) -> f64 {
-    let v = v.abs();
-    greater(v.x, greater(v.y, v.z))
 }
