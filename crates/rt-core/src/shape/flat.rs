@@ -206,12 +206,43 @@ impl<F: Fn() -> [Expansion; 3]> Task for Meet<'_, F> {
             return None;
         }
         let t = numerator.div::<P>(denominator);
-        let local = [t.scale::<P>(d[0]) - w[0], t.scale::<P>(d[1]) - w[1], t.scale::<P>(d[2]) - w[2]];
+        let mut local = [t.scale::<P>(d[0]) - w[0], t.scale::<P>(d[1]) - w[1], t.scale::<P>(d[2]) - w[2]];
         // The components of w are at most 2 in this unit, those of the direction too. The quotient errs by 2^-70 at
         // worst, the product and the difference by 2^-103 of their operands.
-        let error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
+        let mut error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
+        let largest = local.iter().fold(0.0_f64, |m, x| if x.high.abs() > m { x.high.abs() } else { m });
+        // A place near the anchor met from afar: without the difference of large numbers.
+        if self.plane.offset == 0.0 && largest < exp2i(-40) * t.high.abs() {
+            local = near_anchor::<P>(n, &w, d, denominator);
+            error = exp2i(-99) * largest;
+        }
         Some(Meeting { t: times_power(t.to_f64(), power - direction_power), local, power, error })
     }
+}
+
+/// `t d - w = n x (d x w) / (n . d)`, with an exact inner product: for places much nearer to the anchor than the
+/// origin is. Errs by 2^-100 of itself over the cosine between normal and direction.
+#[cold]
+#[inline(never)]
+fn near_anchor<P: Product>(
+    n: &[Double; 3],
+    w: &[Double; 3],
+    d: [f64; 3],
+    denominator: Double,
+) -> [Double; 3] {
+    let m = cross::<P>(&d.map(Double::from), w).map(|m| m.to_double());
+    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (n[j].mul::<P>(m[k]) - n[k].mul::<P>(m[j])).div::<P>(denominator))
+}
+
+/// The exact cross product.
+#[inline(always)]
+pub(super) fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| {
+        let mut sum = Expansion::ZERO;
+        sum.add_double_product::<P>(a[j], b[k]);
+        sum.add_double_product::<P>(-a[k], b[j]);
+        sum
+    })
 }
 
 /// `a - b` as exact sums of two `f64`, in units of the returned power of two, in which the largest is in `[1, 2)`.

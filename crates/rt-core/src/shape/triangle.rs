@@ -49,15 +49,11 @@ impl Triangle {
         let b = checked_point("triangle corner", b.into())?;
         let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
-        let (mut exact, power) = exact_normal(a, b, c);
-        let rough = DVec3::from_array([0, 1, 2].map(|i| exact[i].to_double().high));
-        if rough == DVec3::ZERO {
+        let (exact, area_power) = exact_normal(a, b, c);
+        let normal = exact.map(|n| n.to_double());
+        if normal.iter().all(|n| n.high == 0.0) {
             return Err(Error::Degenerate { vertices: [a, b, c] });
         }
-        let normal_power = flat::power_of(rough);
-        exact.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
-        let normal = exact.map(|n| n.to_double());
-        let area_power = 2 * power + normal_power;
         Ok(Triangle {
             a,
             b,
@@ -140,14 +136,15 @@ impl Triangle {
     }
 }
 
-/// `(b - a) x (c - a)` without rounding, the edges in units of `2^power`.
+/// `(b - a) x (c - a)` without rounding, in units of the returned power of two, in which the largest component is in
+/// `[1, 2)`.
 fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
     struct Cross([Double; 3], [Double; 3]);
     impl Task for Cross {
         type Output = [Expansion; 3];
         #[inline(always)]
         fn run<P: Product>(self) -> [Expansion; 3] {
-            cross::<P>(&self.0, &self.1)
+            flat::cross::<P>(&self.0, &self.1)
         }
     }
     let power = flat::power_of((b - a).abs().max((c - a).abs()));
@@ -155,18 +152,12 @@ fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
         [Double::difference(to.x, a.x), Double::difference(to.y, a.y), Double::difference(to.z, a.z)]
             .map(|x| x.scale_exact(exp2i(-power)))
     };
-    (run(Cross(edge(b), edge(c))), power)
-}
-
-/// The exact cross product.
-#[inline(always)]
-fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| {
-        let mut sum = Expansion::ZERO;
-        sum.add_double_product::<P>(a[j], b[k]);
-        sum.add_double_product::<P>(-a[k], b[j]);
-        sum
-    })
+    let mut normal = run(Cross(edge(b), edge(c)));
+    let rough =
+        DVec3::new(normal[0].to_double().high, normal[1].to_double().high, normal[2].to_double().high);
+    let normal_power = flat::power_of(rough);
+    normal.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
+    (normal, 2 * power + normal_power)
 }
 
 /// The exact signs of the edge functions opposite the corners.
@@ -187,7 +178,7 @@ impl Task for EdgeSigns<'_> {
         let scale = exp2i(-flat::power_of(DVec3::splat(largest)));
         let [a, b, c] = from_origin.map(|p| p.map(|x| x.scale_exact(scale)));
         [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| {
-            let m = cross::<P>(p, q);
+            let m = flat::cross::<P>(p, q);
             let mut sum = Expansion::ZERO;
             for (m, d) in m.iter().zip(d.to_array()) {
                 sum.add_expansion_product::<P>(m, Double::from(d));
