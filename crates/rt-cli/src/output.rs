@@ -46,7 +46,8 @@ impl Output {
     pub fn check(path: &Path) -> Result<Output, Failure> {
         if path.as_os_str() == "-" {
             if io::stdout().is_terminal() {
-                let advice = "standard output is a terminal: send it to a file or a program, or name a file with -o";
+                let advice =
+                    "standard output is a terminal: send it to a file or a program, or name a file with -o";
                 return Err(Failure::Usage(advice.into()));
             }
             return Ok(Output::Stdout);
@@ -69,11 +70,6 @@ impl Output {
         // The folder must take a new file; this one goes away at once.
         temporary_beside(&target).map_err(failed)?;
         Ok(Output::File { shown: path.into(), path: target })
-    }
-
-    /// Whether this is standard output.
-    pub fn is_stdout(&self) -> bool {
-        matches!(self, Output::Stdout)
     }
 
     /// The file that will be replaced, if there is one.

@@ -119,7 +119,9 @@ impl Place {
             // The last line; a pixel may hold a line feed, the line itself does not.
             let line = file.strip_suffix(b"\n")?;
             let tail = &line[line.len().saturating_sub(200)..];
-            let start = tail.windows(2 + KEYWORD.len()).rposition(|w| w.starts_with(b"# ") && w.ends_with(KEYWORD.as_bytes()))?;
+            let start = tail
+                .windows(2 + KEYWORD.len())
+                .rposition(|w| w.starts_with(b"# ") && w.ends_with(KEYWORD.as_bytes()))?;
             &tail[start + 2 + KEYWORD.len()..]
         };
         Place::parse(std::str::from_utf8(text).ok()?)
@@ -197,7 +199,14 @@ mod tests {
 
     #[test]
     fn garbage_has_no_place() {
-        for garbage in [&b""[..], b"\n", b"# rt-part\n", b"# rt-part part=1/2\n", PNG_SIGNATURE, b"\xff\xfe# rt-part \xff\n"] {
+        for garbage in [
+            &b""[..],
+            b"\n",
+            b"# rt-part\n",
+            b"# rt-part part=1/2\n",
+            PNG_SIGNATURE,
+            b"\xff\xfe# rt-part \xff\n",
+        ] {
             assert_eq!(Place::find(garbage), None);
         }
         let mut file = PNG_SIGNATURE.to_vec();
