@@ -9,6 +9,7 @@ use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent};
+use crate::scaled::{largest, times_power};
 use crate::{Aabb, Error, Ray};
 use glam::{DVec2, DVec3};
 
@@ -22,32 +23,12 @@ pub(super) const LEAST_CERTAIN: f64 = exp2i(-1022) * exp2i(-38);
 /// A denominator below this may owe its relative error to underflow (2^-1075 against 2^-53 of the value).
 pub(super) const LEAST_DENOMINATOR: f64 = exp2i(-1000);
 
-/// Coordinates and sizes up to here keep every square and product of the hot paths finite.
-const LARGEST: f64 = exp2i(508);
-
-/// The point itself when it is finite and within range.
-pub(super) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, Error> {
-    if !value.is_finite() {
-        return Err(Error::NotFinite { what, value });
-    }
-    let largest = value.abs().max_element();
-    if largest > LARGEST { Err(Error::OutOfRange { what, value: largest }) } else { Ok(value) }
-}
-
 /// The vector itself when it is finite and has a length.
 pub(super) fn checked_direction(what: &'static str, value: DVec3) -> Result<DVec3, Error> {
     if !value.is_finite() {
         return Err(Error::NotFinite { what, value });
     }
     if value == DVec3::ZERO { Err(Error::ZeroLength { what, value }) } else { Ok(value) }
-}
-
-/// `2^power` for scaling, split in two so that neither factor over- or underflows.
-#[inline(always)]
-pub(super) fn scaled(x: f64, power: i32) -> f64 {
-    let half = (power / 2).clamp(-1022, 1023);
-    let rest = (power - half).clamp(-1022, 1023);
-    x * exp2i(half) * exp2i(rest)
 }
 
 /// The vector times `2^-power`, with the largest component in `[1, 2)`, and that power; zero stays as it is.
@@ -60,7 +41,7 @@ pub(super) fn prescaled(v: DVec3) -> (DVec3, i32) {
 /// The power of two that [`prescaled`] divides by.
 #[inline(always)]
 pub(super) fn power_of(v: DVec3) -> i32 {
-    let largest = v.abs().max_element();
+    let largest = largest(v);
     if largest == 0.0 { 0 } else { exponent(largest).clamp(-1022, 1022) }
 }
 
@@ -121,8 +102,10 @@ pub(super) fn plane_axes(normal: DVec3) -> (DVec3, DVec3) {
 pub(super) struct ExactPlane {
     /// A point of the plane.
     pub(super) anchor: DVec3,
-    /// The normal, prescaled, within 2^-104 of each component.
+    /// The normal, of a length near 1, within 2^-104 of each component.
     pub(super) normal: [Double; 3],
+    /// `normal . (p - anchor)` for the points of the plane: zero unless the anchor lies beside it.
+    pub(super) offset: f64,
 }
 
 /// Where a ray meets a plane.
@@ -204,19 +187,20 @@ impl<F: Fn() -> [Expansion; 3]> Task for Meet<'_, F> {
         let (w, power) = exact_difference(self.plane.anchor, self.ray.origin);
         let n = &self.plane.normal;
         let d = direction.to_array();
-        let terms = [n[0].mul::<P>(w[0]), n[1].mul::<P>(w[1]), n[2].mul::<P>(w[2])];
+        let offset = self.plane.offset * exp2i(-power);
+        let terms = [n[0].mul::<P>(w[0]), n[1].mul::<P>(w[1]), n[2].mul::<P>(w[2]), Double::from(offset)];
         let parts = [n[0].scale::<P>(d[0]), n[1].scale::<P>(d[1]), n[2].scale::<P>(d[2])];
-        let mut numerator = terms[0] + terms[1] + terms[2];
+        let mut numerator = terms[0] + terms[1] + terms[2] + terms[3];
         let mut denominator = parts[0] + parts[1] + parts[2];
         // Each sum errs by less than 2^-101 of the sum of its terms' sizes: products 6 u^2, additions 3 u^2 each, the
         // rounded normal u^2 (u^2 = 2^-106). The quotient is then right to 2^-70 unless a sum cancels to below
         // 2^-30 of its terms: there the terms are added exactly.
         const CANCELLED: f64 = exp2i(-30);
-        let size = |t: &[Double; 3]| t[0].high.abs() + t[1].high.abs() + t[2].high.abs();
+        let size = |terms: &[Double]| terms.iter().fold(0.0, |sum, term| sum + term.high.abs());
         if !(numerator.high.abs() > CANCELLED * size(&terms)
             && denominator.high.abs() > CANCELLED * size(&parts))
         {
-            (numerator, denominator) = exact_sums::<P>(&(self.exact_normal)(), &w, d);
+            (numerator, denominator) = exact_sums::<P>(&(self.exact_normal)(), &w, offset, d);
         }
         if denominator.high == 0.0 {
             return None;
@@ -226,7 +210,7 @@ impl<F: Fn() -> [Expansion; 3]> Task for Meet<'_, F> {
         // The components of w are at most 2 in this unit, those of the direction too. The quotient errs by 2^-70 at
         // worst, the product and the difference by 2^-103 of their operands.
         let error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
-        Some(Meeting { t: scaled(t.to_f64(), power - direction_power), local, power, error })
+        Some(Meeting { t: times_power(t.to_f64(), power - direction_power), local, power, error })
     }
 }
 
@@ -241,8 +225,14 @@ pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
 
 #[cold]
 #[inline(never)]
-fn exact_sums<P: Product>(normal: &[Expansion; 3], w: &[Double; 3], d: [f64; 3]) -> (Double, Double) {
+fn exact_sums<P: Product>(
+    normal: &[Expansion; 3],
+    w: &[Double; 3],
+    offset: f64,
+    d: [f64; 3],
+) -> (Double, Double) {
     let (mut numerator, mut denominator) = (Expansion::ZERO, Expansion::ZERO);
+    numerator.add(offset);
     for i in 0..3 {
         numerator.add_expansion_product::<P>(&normal[i], w[i]);
         denominator.add_expansion_product::<P>(&normal[i], Double::from(d[i]));
@@ -266,14 +256,6 @@ pub(super) fn settle(at: &mut Meeting, normal: DVec3) {
     if (0..3).all(|i| i == k || n[i] == 0.0) {
         at.local[k] = Double::ZERO;
     }
-}
-
-/// A size that is positive and within range.
-pub(super) fn checked_length(what: &'static str, value: f64) -> Result<f64, Error> {
-    if !(value > 0.0 && value.is_finite()) {
-        return Err(Error::NotPositive { what, value });
-    }
-    if value < 1.0 / LARGEST || value > LARGEST { Err(Error::OutOfRange { what, value }) } else { Ok(value) }
 }
 
 /// The box from `anchor + least` to `anchor + greatest`, each end rounded away from the box.
