@@ -357,7 +357,7 @@ impl<'a> Reader<'a> {
             let place = self.tokens.place();
             self.report.error(place, "the file ends without a view: a scene needs a `v` entity");
         }
-        // Half the light of one lamp, a quarter in power for each of four: the usual choice for this format.
+        // The usual choice for this format: 1/2 for one lamp, 1/4 each for four.
         let count = self.lights.len().max(1) as f64;
         let share = count.sqrt() / (2.0 * count);
         self.scene = std::mem::take(&mut self.scene).ambient(Color::gray(share));
@@ -388,6 +388,12 @@ fn short(text: &str) -> String {
 /// A triangle with vertex normals, which may point against the order of rotation (whole files do): they are turned to
 /// the side that the vertices' order says is outside. A normal of length zero makes the triangle flat.
 fn smooth_triangle(corners: [DVec3; 3], normals: [DVec3; 3]) -> Result<Triangle, rt_core::Error> {
-    let _ = normals;
-    Triangle::new(corners[0], corners[1], corners[2])
+    let flat = Triangle::new(corners[0], corners[1], corners[2])?;
+    let [na, nb, nc] = normals;
+    let outward: f64 = normals.iter().map(|n| flat.normal().dot(n.normalize_or_zero())).sum();
+    let side = if outward < 0.0 { -1.0 } else { 1.0 };
+    match flat.clone().with_normals(na * side, nb * side, nc * side) {
+        Err(rt_core::Error::ZeroLength { .. }) => Ok(flat),
+        smooth => smooth,
+    }
 }
