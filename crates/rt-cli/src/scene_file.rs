@@ -78,7 +78,9 @@ fn read_picture(folder: &Path, path: &str) -> Result<Vec<u8>, String> {
     let failed = |error: io::Error| format!("{} ({})", reason(&error), tried.display());
     let real = tried.canonicalize().map_err(failed)?;
     if !real.starts_with(folder.canonicalize().map_err(failed)?) {
-        return Err("a symbolic link leads out of the scene's folder: put the picture beside the scene".into());
+        return Err(
+            "a symbolic link leads out of the scene's folder: put the picture beside the scene".into()
+        );
     }
     // Opening a pipe would wait for a writer, a device might never end.
     let is_file = |path: &PathBuf| path.metadata().map(|found| found.is_file());
