@@ -54,8 +54,13 @@ pub struct Diagnostics {
 impl Diagnostics {
     /// An error about the file as a whole, placed at its very beginning.
     pub fn of_file(file: &str, message: impl Into<String>) -> Diagnostics {
-        let mut report = Report::new(file, "");
-        report.error(0..0, message);
+        Diagnostics::at(file, b"", 0, message)
+    }
+
+    /// An error at one byte of a file that need not be text.
+    pub(crate) fn at(file: &str, bytes: &[u8], at: usize, message: impl Into<String>) -> Diagnostics {
+        let mut report = Report { file, text: bytes, found: Vec::new(), more: 0 };
+        report.error(at..at + 1, message);
         match report.finish_failed::<std::convert::Infallible>() {
             Err(diagnostics) => diagnostics,
             Ok(never) => match never {},
@@ -105,7 +110,7 @@ impl std::error::Error for Diagnostics {}
 /// Collects the errors of one text while it is read.
 pub(crate) struct Report<'a> {
     file: &'a str,
-    text: &'a str,
+    text: &'a [u8],
     /// Sorted by place, at most `MOST_ERRORS`.
     found: Vec<(Range<usize>, String)>,
     more: usize,
@@ -113,7 +118,7 @@ pub(crate) struct Report<'a> {
 
 impl<'a> Report<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Report<'a> {
-        Report { file, text, found: Vec::new(), more: 0 }
+        Report { file, text: text.as_bytes(), found: Vec::new(), more: 0 }
     }
 
     /// Notes an error about these bytes of the text.
@@ -157,7 +162,7 @@ impl<'a> Report<'a> {
     }
 
     fn diagnostic(&self, span: &Range<usize>, message: &str) -> Diagnostic {
-        let bytes = self.text.as_bytes();
+        let bytes = self.text;
         let start = span.start.min(bytes.len());
         let begin = bytes[..start].iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
         let line = 1 + bytes[..begin].iter().filter(|&&b| b == b'\n').count();

@@ -172,7 +172,9 @@ static KINDS: [Kind; 10] = [
 ];
 
 fn triangle(f: &Fields) -> Result<Shape, Error> {
-    Ok(Triangle::new(f.vector(0), f.vector(1), f.vector(2))?.into())
+    let flat = Triangle::new(f.vector(0), f.vector(1), f.vector(2))?;
+    let smooth = f.0[3].is_some();
+    Ok(if smooth { flat.with_normals(f.vector(3), f.vector(4), f.vector(5))? } else { flat }.into())
 }
 
 /// The words for the kinds of shape.

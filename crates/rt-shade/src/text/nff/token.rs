@@ -61,11 +61,6 @@ impl<'a> Tokens<'a> {
     pub(super) fn place(&mut self) -> Range<usize> {
         self.peek().map_or(self.text.len()..self.text.len(), |token| token.span())
     }
-
-    /// How many bytes are left.
-    pub(super) fn left(&self) -> usize {
-        self.text.len() - self.at
-    }
 }
 
 /// White space of C's `scanf`.
