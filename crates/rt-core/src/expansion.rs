@@ -76,6 +76,27 @@ impl Expansion {
         }
     }
 
+    /// Whether it is negative (-1), zero (0) or positive (1).
+    pub(crate) fn sign(&self) -> i32 {
+        match self.parts[..self.len].last() {
+            Some(&last) => {
+                if last > 0.0 {
+                    1
+                } else {
+                    -1
+                }
+            }
+            None => 0,
+        }
+    }
+
+    /// The product with a power of two: exact unless parts underflow.
+    pub(crate) fn scale_exact(&mut self, power: f64) {
+        for part in &mut self.parts[..self.len] {
+            *part *= power;
+        }
+    }
+
     /// The sum of two `f64` that is nearest, within 2^-104 of the exact value, relatively (the two leading components
     /// of Shewchuk's compress).
     pub(crate) fn to_double(&self) -> Double {

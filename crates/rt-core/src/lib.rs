@@ -15,7 +15,6 @@ pub mod double;
 mod double_vector;
 mod error;
 mod expansion;
-
 mod frame;
 pub mod geometry;
 mod hit;

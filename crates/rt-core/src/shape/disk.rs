@@ -67,7 +67,7 @@ impl Disk {
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let plane = ExactPlane { anchor: self.center, normal: flat::doubles(self.normal) };
+        let plane = ExactPlane { anchor: self.center, normal: flat::doubles(self.normal), offset: 0.0 };
         let mut at = flat::meet(&plane, ray, || flat::expansions(self.normal))?;
         flat::settle(&mut at, self.normal);
         Some(at)

@@ -121,8 +121,10 @@ pub(super) fn plane_axes(normal: DVec3) -> (DVec3, DVec3) {
 pub(super) struct ExactPlane {
     /// A point of the plane.
     pub(super) anchor: DVec3,
-    /// The normal, prescaled, within 2^-104 of each component.
+    /// The normal, of a length near 1, within 2^-104 of each component.
     pub(super) normal: [Double; 3],
+    /// `normal . (p - anchor)` for the points of the plane: zero unless the anchor lies beside it.
+    pub(super) offset: f64,
 }
 
 /// Where a ray meets a plane.
@@ -204,19 +206,20 @@ impl<F: Fn() -> [Expansion; 3]> Task for Meet<'_, F> {
         let (w, power) = exact_difference(self.plane.anchor, self.ray.origin);
         let n = &self.plane.normal;
         let d = direction.to_array();
-        let terms = [n[0].mul::<P>(w[0]), n[1].mul::<P>(w[1]), n[2].mul::<P>(w[2])];
+        let offset = self.plane.offset * exp2i(-power);
+        let terms = [n[0].mul::<P>(w[0]), n[1].mul::<P>(w[1]), n[2].mul::<P>(w[2]), Double::from(offset)];
         let parts = [n[0].scale::<P>(d[0]), n[1].scale::<P>(d[1]), n[2].scale::<P>(d[2])];
-        let mut numerator = terms[0] + terms[1] + terms[2];
+        let mut numerator = terms[0] + terms[1] + terms[2] + terms[3];
         let mut denominator = parts[0] + parts[1] + parts[2];
         // Each sum errs by less than 2^-101 of the sum of its terms' sizes: products 6 u^2, additions 3 u^2 each, the
         // rounded normal u^2 (u^2 = 2^-106). The quotient is then right to 2^-70 unless a sum cancels to below
         // 2^-30 of its terms: there the terms are added exactly.
         const CANCELLED: f64 = exp2i(-30);
-        let size = |t: &[Double; 3]| t[0].high.abs() + t[1].high.abs() + t[2].high.abs();
+        let size = |terms: &[Double]| terms.iter().fold(0.0, |sum, term| sum + term.high.abs());
         if !(numerator.high.abs() > CANCELLED * size(&terms)
             && denominator.high.abs() > CANCELLED * size(&parts))
         {
-            (numerator, denominator) = exact_sums::<P>(&(self.exact_normal)(), &w, d);
+            (numerator, denominator) = exact_sums::<P>(&(self.exact_normal)(), &w, offset, d);
         }
         if denominator.high == 0.0 {
             return None;
@@ -241,8 +244,14 @@ pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
 
 #[cold]
 #[inline(never)]
-fn exact_sums<P: Product>(normal: &[Expansion; 3], w: &[Double; 3], d: [f64; 3]) -> (Double, Double) {
+fn exact_sums<P: Product>(
+    normal: &[Expansion; 3],
+    w: &[Double; 3],
+    offset: f64,
+    d: [f64; 3],
+) -> (Double, Double) {
     let (mut numerator, mut denominator) = (Expansion::ZERO, Expansion::ZERO);
+    numerator.add(offset);
     for i in 0..3 {
         numerator.add_expansion_product::<P>(&normal[i], w[i]);
         denominator.add_expansion_product::<P>(&normal[i], Double::from(d[i]));

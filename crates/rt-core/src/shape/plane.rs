@@ -60,7 +60,7 @@ impl Plane {
     }
 
     fn exact(&self) -> ExactPlane {
-        ExactPlane { anchor: self.point, normal: flat::doubles(self.normal) }
+        ExactPlane { anchor: self.point, normal: flat::doubles(self.normal), offset: 0.0 }
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
