@@ -12,7 +12,10 @@ pub use glam;
 
 mod bounds;
 pub mod double;
+mod double_vector;
 mod error;
+mod expansion;
+mod frame;
 pub mod geometry;
 mod hit;
 pub mod kernel;
@@ -20,6 +23,7 @@ mod math;
 pub mod poly;
 mod primitive;
 mod ray;
+mod scaled;
 pub mod shape;
 mod surface;
 mod transform;

@@ -4,6 +4,8 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod disk;
+mod flat;
+mod frustum;
 mod plane;
 mod sphere;
 mod torus;

@@ -1,51 +1,226 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use glam::DVec3;
+//! The sphere `|p - center| = radius`.
+//!
+//! A ray is first moved to its closest approach to the centre, so that nothing is lost from afar, and the
+//! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere
+//! Intersection", Ray Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7).
 
-/// Sphere.
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::frame::turns;
+use crate::kernel::{self, Product, Task};
+use crate::math::{exp2i, exponent, sqrt};
+use crate::scaled::{ScaledRay, admit, admit_exit, checked_length, checked_point, largest};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
+use glam::{DVec2, DVec3};
+
+/// A sphere: its surface, hit from outside and from inside.
+///
+/// The only part is 0; root 0 is where the line enters, root 1 where it leaves. The normal points outward. `u` is
+/// the angle about the y axis from x towards -z, in turns in `[0, 1)`; `v` is 0 at the south pole (-y) and 1 at the
+/// north pole. The shape's own axes are the world's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
 pub struct Sphere {
     center: DVec3,
     radius: f64,
 }
 
 impl Sphere {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The sphere about `center` with `radius`, both in world units.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] for a centre that is not finite or has a coordinate beyond
+    /// 1e150, [`Error::NotPositive`] or [`Error::OutOfRange`] for the radius.
     pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
-        let (center,) = (center.into(),);
-        Ok(Self { center, radius })
+        Ok(Sphere {
+            center: checked_point("center", center.into())?,
+            radius: checked_length("radius", radius)?,
+        })
     }
 
-    /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    /// The centre.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The same sphere scaled, turned and moved.
+    ///
+    /// # Errors
+    /// As [`Sphere::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        Sphere::new(by.point(self.center), self.radius * by.scale())
+    }
+
+    fn scaled(&self, ray: &Ray) -> Option<(ScaledRay, Chord)> {
+        let unit = exponent(self.radius);
+        let scaled = ScaledRay::new(ray, self.center, unit)?;
+        let chord = kernel::run(FindChord { ray: &scaled, radius: self.radius * exp2i(-unit) });
+        Some((scaled, chord))
+    }
+
+    /// Both crossings in double-double.
+    fn exact(&self, ray: &Ray) -> Option<[Double; 2]> {
+        let (scaled, chord) = self.scaled(ray)?;
+        if chord.depth.high > 0.0 { Some(chord.at.map(|s| scaled.unscale(chord.shift + s))) } else { None }
     }
 }
 
-#[allow(unused_variables)]
+/// A line and a sphere about zero in double-double: `start + (t - shift) * direction`.
+struct Chord {
+    shift: Double,
+    start: DoubleVector,
+    /// The square of half the chord times the direction's squared length: positive where the line crosses.
+    depth: Double,
+    /// The crossings, after `shift`.
+    at: [Double; 2],
+}
+
+struct FindChord<'a> {
+    ray: &'a ScaledRay,
+    radius: f64,
+}
+
+impl Task for FindChord<'_> {
+    type Output = Chord;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Chord {
+        let d = self.ray.direction;
+        let square = d.dot(d);
+        let far = self.ray.relative;
+        let step = -(far.high().dot(d) / square);
+        let mut shift = Double::from(step);
+        let mut start = far + DoubleVector::product::<P>(d, step);
+        // The first step errs by a few u of the distance: from beyond 2^30 a second one brings the rest down.
+        if largest(far.high()) > exp2i(30) {
+            let step = -(start.high().dot(d) / square);
+            shift = shift + step;
+            start = start + DoubleVector::product::<P>(d, step);
+        }
+        let a = DoubleVector::from(d).dot_f64::<P>(d);
+        let b = start.dot_f64::<P>(d);
+        let c = Double::product::<P>(self.radius, self.radius) - start.length_squared::<P>();
+        let depth = b.square::<P>() + a.mul::<P>(c);
+        let half = depth.sqrt::<P>();
+        Chord { shift, start, depth, at: [(-b - half).div::<P>(a), (half - b).div::<P>(a)] }
+    }
+}
+
+struct FindSurface<'a> {
+    ray: &'a ScaledRay,
+    radius: f64,
+    root: usize,
+}
+
+/// What double-double arithmetic finds out about a hit, in the scale of the ray.
+struct Refined {
+    t: Double,
+    local: DoubleVector,
+    normal: DVec3,
+    /// Half the chord, for the error radius.
+    half: f64,
+}
+
+impl Task for FindSurface<'_> {
+    type Output = Refined;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Refined {
+        let (ray, radius) = (self.ray, self.radius);
+        let chord = FindChord { ray, radius }.run::<P>();
+        let s = chord.at[self.root & 1];
+        let mut local = chord.start + DoubleVector::from(ray.direction).mul::<P>(s);
+        if chord.depth.high <= 0.0 {
+            // The rounded ray misses: take the place on the surface that is next to its closest approach.
+            let length = local.length_squared::<P>().sqrt::<P>();
+            local = local.mul::<P>(Double::from(radius).div::<P>(length));
+        }
+        let normal = local.mul::<P>(Double::ONE.div::<P>(Double::from(radius))).high();
+        let half = sqrt(if chord.depth.high > 0.0 { chord.depth.high } else { 0.0 });
+        Refined { t: chord.shift + s, local, normal, half }
+    }
+}
+
 impl Primitive for Sphere {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        {
-            let w = ray.origin - self.center;
-            let a = ray.direction.length_squared();
-            let tc = -w.dot(ray.direction) / a;
-            let m = w + ray.direction * tc;
-            let h = (self.radius * self.radius - m.length_squared()) / a;
-            if !(h > 0.0) {
-                return None;
+        let [enter, leave] = self.exact(ray)?;
+        admit(within, enter, 0, 0).or_else(|| admit(within, leave, 0, 1))
+    }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        let Some(at) = self.exact(ray) else { return };
+        for (root, t) in at.into_iter().enumerate() {
+            if let Some(hit) = admit(within, t, 0, root as u32) {
+                each(hit);
             }
-            let h = h.sqrt();
-            within.admit(tc - h, 0, 0).or_else(|| within.admit(tc + h, 0, 1))
         }
     }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        let l = p - self.center;
-        Surface::new(hit.t(), p, l, l / self.radius, 1e-12)
+        let unit = exponent(self.radius);
+        let radius = self.radius * exp2i(-unit);
+        let Some(scaled) = ScaledRay::new(ray, self.center, unit) else {
+            return Surface::new(hit.t(), self.center, DVec3::ZERO, DVec3::Y, self.radius);
+        };
+        let found = kernel::run(FindSurface { ray: &scaled, radius, root: hit.root() as usize });
+        let local = found.local.scale_exact(exp2i(unit));
+        let point = local.plus_f64(self.center);
+        let n = found.normal;
+        let v = 0.5 + libm::atan2(n.y, sqrt(n.x * n.x + n.z * n.z)) * core::f64::consts::FRAC_1_PI;
+        Surface::new(
+            scaled.unscale(found.t).high,
+            point,
+            local.high(),
+            n,
+            error_radius(point, self.radius, found.half),
+        )
+        .with_uv(DVec2::new(turns(n.x, -n.z), v))
     }
+
     fn bounds(&self) -> Option<Aabb> {
-        None
+        // Two steps: one for the rounding of the sum, one for that of a point beside it.
+        let r = DVec3::splat(self.radius);
+        Some(Aabb { min: (self.center - r).map(down), max: (self.center + r).map(up) })
     }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        if from.side == Side::Outside || !ray.is_valid() {
+            return None;
+        }
+        let (scaled, chord) = self.scaled(ray)?;
+        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+    }
+
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        if let Some(exit) = self.hit_leaving(ray, within, from) {
+            each(exit);
+        }
+    }
+}
+
+/// Two numbers down.
+fn down(x: f64) -> f64 {
+    x.next_down().next_down()
+}
+
+/// Two numbers up.
+fn up(x: f64) -> f64 {
+    x.next_up().next_up()
+}
+
+/// The error radius of a point that was rounded once from double-double.
+///
+/// The rounding errs by at most u = 2^-53 of each coordinate, hence u `|point|` in all (and 2^-1074 where that
+/// is subnormal). The place on the ray errs, in units of `size`, by the error of the discriminant, at most
+/// 2^-99, over twice its root `half`; where the discriminant itself is below its error, by the root of that.
+pub(super) fn error_radius(point: DVec3, size: f64, half: f64) -> f64 {
+    let big = largest(point);
+    // sqrt(3) < 1.75, and an ulp of slack.
+    let rounding = big * (1.75 * exp2i(-53)) + f64::from_bits(4);
+    let along = exp2i(-100) / half;
+    let along = if along < exp2i(-49) { along } else { exp2i(-49) };
+    rounding + size * along
 }

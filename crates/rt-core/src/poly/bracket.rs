@@ -1,0 +1,206 @@
+//! The careful solver: real roots between critical points, in double-double, exactly where that is not enough.
+//!
+//! Between two neighbouring critical points (the roots of the derivative, found in the same way) a polynomial is
+//! monotone, so its signs there tell how many roots there are, and each lies in a bracket. A sign is taken from
+//! double-double arithmetic when the value exceeds the bound of its error; otherwise an exact test settles whether
+//! the critical point is a multiple root, and if not, the polynomial is developed about the point, by exact expansions,
+//! which resolves what is smaller by another factor 2^-100.
+//!
+//! The roots are refined by Newton's method kept inside the bracket by bisection.
+
+use super::Roots;
+use super::exact::{multiple_root, shifted};
+use super::scaled::{Polynomial, Value, ldexp};
+use crate::double::Double;
+use crate::kernel::Product;
+use crate::math::{exp2i, exponent, sqrt};
+
+/// All real roots of the polynomial with these coefficients (ascending powers, finite).
+pub(super) fn solve<P: Product, const N: usize>(c: &[Double]) -> Roots<N, Double> {
+    if c.iter().all(|c| c.high == 0.0) {
+        return Roots::everything();
+    }
+    let mut p = Polynomial::new(c);
+    let mut zeros = 0;
+    while p.vanishes_at_zero() {
+        p = p.deflated();
+        zeros += 1;
+    }
+    let nonzero = monotone_roots::<P>(&p, true);
+    let mut roots = Roots::default();
+    for root in nonzero.iter() {
+        if zeros > 0 && root.x.high > 0.0 {
+            roots.push(Double::ZERO, zeros);
+            zeros = 0;
+        }
+        roots.push(root.x, root.multiplicity);
+    }
+    if zeros > 0 {
+        roots.push(Double::ZERO, zeros);
+    }
+    roots
+}
+
+/// A place where the sign is known.
+#[derive(Clone, Copy)]
+struct Knot {
+    x: Double,
+    sign: i32,
+    /// The distance at which a parabola through this critical point vanishes, or infinity.
+    reach: f64,
+}
+
+/// The roots of a polynomial of degree up to four. `exact`: decide multiple roots by the exact test.
+fn monotone_roots<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
+    let mut roots = Roots::default();
+    if p.degree() == 0 {
+        return roots;
+    }
+    let bound = p.bound_exponent();
+    let end = if bound > 1023 { f64::MAX } else { ldexp(1.0, bound) };
+    let end_sign = |side: i32| {
+        if bound <= 1023 {
+            return p.sign_at_infinity(side);
+        }
+        sign_of(p.at::<P>(Double::from(end * f64::from(side))).value)
+    };
+    let left = Knot { x: Double::from(-end), sign: end_sign(-1), reach: f64::INFINITY };
+    let right = Knot { x: Double::from(end), sign: end_sign(1), reach: f64::INFINITY };
+
+    let critical = if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() };
+    let mut from = left;
+    for c in critical.iter() {
+        let mut knot = critical_knot::<P>(p, c.x);
+        if knot.sign == 0 || exact && knot.reach == 0.0 {
+            // In doubt: `reach` 0 marks a sign that took more than double-double.
+            if let Some(multiplicity) = if exact { multiple_root::<P>(p, c.x) } else { Some(c.multiplicity + 1) } {
+                roots.push(c.x, multiplicity);
+                // Past a root of even order the sign is the one before, past one of odd order the other.
+                knot.sign = if multiplicity % 2 == 0 { from.sign } else { -from.sign };
+                from = knot;
+                continue;
+            }
+        }
+        if from.sign * knot.sign < 0 {
+            let root = refine::<P>(p, from, knot);
+            roots.push(root, 1);
+        }
+        from = knot;
+    }
+    if from.sign * right.sign < 0 {
+        let root = refine::<P>(p, from, right);
+        roots.push(root, 1);
+    }
+    roots
+}
+
+fn sign_of(value: Double) -> i32 {
+    if value.high > 0.0 {
+        1
+    } else if value.high < 0.0 {
+        -1
+    } else {
+        0
+    }
+}
+
+/// The sign at a critical point.
+fn critical_knot<P: Product>(p: &Polynomial, x: Double) -> Knot {
+    let v = p.at::<P>(x);
+    if v.value.high.abs() > v.error {
+        let reach = sqrt((v.value.high / v.curvature).abs());
+        return Knot { x, sign: sign_of(v.value), reach: ldexp(reach, v.exponent) };
+    }
+    // About the rounded point the value, the slope and the curvature are exact to double-double each.
+    let about = shifted::<P>(p, x.high);
+    let mut y = Double::from(x.low);
+    let v = about.at::<P>(y);
+    let step = ldexp(-0.5 * v.slope / v.curvature, v.exponent);
+    if step.abs() <= x.high.abs() * exp2i(-50) {
+        y = y + step;
+    }
+    let v = about.at::<P>(y);
+    let sign = if v.value.high.abs() > v.error { sign_of(v.value) } else { 0 };
+    Knot { x, sign, reach: 0.0 }
+}
+
+/// The root between two places of opposite sign, to about 2^-60 of its size.
+fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
+    let (mut low, mut high) = (from.x, to.x);
+    // Start where the parabola of the nearer end vanishes.
+    let mut x = if from.reach < to.reach {
+        low + from.reach
+    } else if to.reach < f64::INFINITY {
+        high - to.reach
+    } else {
+        middle(low, high)
+    };
+    // About a point of a cluster double-double does not resolve the root: then the polynomial is developed there.
+    let mut origin = 0.0;
+    let mut local = *p;
+    let mut last = f64::INFINITY;
+    // Every other step at least halves the bracket on the scale of the representable numbers (2^64 of them), so that
+    // 2 * (64 + 53) steps suffice; Newton's method takes 3 to 6.
+    for _ in 0..234 {
+        if !(x > low && x < high) {
+            x = middle(low, high);
+        }
+        let at: Value = local.at::<P>(x - origin);
+        let slope = at.slope.abs();
+        let step = ldexp(-at.value.to_f64() / at.slope, at.exponent);
+        let root = x + step;
+        let tolerance = root.high.abs().min(x.high.abs()) * exp2i(-62);
+        let noise = ldexp(at.error / slope, at.exponent);
+        let doubtful = at.value.high.abs() <= at.error;
+        if !doubtful {
+            if sign_of(at.value) == from.sign {
+                low = x;
+            } else {
+                high = x;
+            }
+        }
+        // What Newton's method leaves: the curvature's share of the square of the step.
+        let left = (step * ldexp(step, -at.exponent) * (at.curvature / at.slope)).abs();
+        // The step itself is known to a few units of 2^-53 of its own size.
+        let left = left.max(step.abs() * exp2i(-50));
+        if left <= tolerance && noise <= tolerance && step.is_finite() {
+            return if root < low {
+                low
+            } else if root > high {
+                high
+            } else {
+                root
+            };
+        }
+        if doubtful || (noise > tolerance && step.abs() <= x.high.abs() * exp2i(-40)) {
+            if origin == x.high {
+                // Developed about this very place already: x is as near as can be told.
+                return x;
+            }
+            origin = x.high;
+            local = shifted::<P>(p, origin);
+            continue;
+        }
+        if (high - low).high <= tolerance {
+            return x;
+        }
+        let short = step.abs() <= 0.5 * last;
+        last = if short { step.abs() } else { f64::INFINITY };
+        x = if short && root > low && root < high { root } else { middle(low, high) };
+    }
+    x
+}
+
+/// A place that halves the bracket: the mean of the ends when they are near each other, otherwise of their exponents.
+fn middle(low: Double, high: Double) -> Double {
+    let (a, b) = (low.high, high.high);
+    let near = exponent(b - a) <= exponent(if a.abs() > b.abs() { a } else { b }) - 1;
+    if near {
+        return (low.scale_exact(0.5)) + high.scale_exact(0.5);
+    }
+    // The order of the bits of `f64` is that of their absolute values.
+    let key = |x: f64| if x < 0.0 { -((-x).to_bits() as i64) } else { x.to_bits() as i64 };
+    let mean = (i128::from(key(a)) + i128::from(key(b))) / 2;
+    let mean = mean as i64;
+    Double::from(if mean < 0 { -f64::from_bits(mean.unsigned_abs()) } else { f64::from_bits(mean as u64) })
+}

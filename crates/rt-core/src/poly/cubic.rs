@@ -1,0 +1,26 @@
+//! Degree three.
+
+use super::{Roots, bracket};
+use crate::Interval;
+use crate::double::Double;
+use crate::kernel::{Product, Task, run};
+
+/// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
+pub fn cubic(c: [f64; 4], within: Interval) -> Roots<3> {
+    if !c.iter().all(|c| c.is_finite()) {
+        return Roots::default();
+    }
+    run(Careful { c }).rounded().within(within)
+}
+
+struct Careful {
+    c: [f64; 4],
+}
+
+impl Task for Careful {
+    type Output = Roots<3, Double>;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Self::Output {
+        bracket::solve::<P, 3>(&self.c.map(Double::from))
+    }
+}

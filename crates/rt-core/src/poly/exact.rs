@@ -1,0 +1,245 @@
+//! Exact arithmetic where double-double cannot decide: floating-point expansions.
+//!
+//! An expansion is a sum of `f64` that do not overlap, in ascending order. Sums with a `f64` and products with a `f64`
+//! are exact (Shewchuk 1997, doi:10.1007/PL00009321, algorithms Grow-Expansion and Scale-Expansion with zero
+//! elimination); the sign is that of the last part.
+
+use super::scaled::{Local, Polynomial};
+use crate::double::{Double, fast_two_sum, two_sum};
+use crate::kernel::Product;
+
+/// The longest expansion that occurs: a polynomial of degree four with double-double coefficients at a `f64`, where each
+/// step doubles the number of parts and adds two: 2, 6, 14, 30, 62.
+const PARTS: usize = 64;
+
+/// An exact sum.
+#[derive(Clone, Copy)]
+pub(super) struct Expansion {
+    part: [f64; PARTS],
+    len: usize,
+}
+
+impl Expansion {
+    fn zero() -> Self {
+        Expansion { part: [0.0; PARTS], len: 0 }
+    }
+
+    fn push(&mut self, part: f64) {
+        if part != 0.0 {
+            if let Some(slot) = self.part.get_mut(self.len) {
+                *slot = part;
+                self.len += 1;
+            }
+        }
+    }
+
+    /// Adds a number.
+    fn add(&mut self, b: f64) {
+        let mut q = b;
+        let mut sum = Expansion::zero();
+        for &part in &self.part[..self.len] {
+            let (s, e) = two_sum(q, part);
+            sum.push(e);
+            q = s;
+        }
+        sum.push(q);
+        *self = sum;
+    }
+
+    fn add_double(&mut self, b: Double) {
+        self.add(b.low);
+        self.add(b.high);
+    }
+
+    /// The product with a number.
+    fn scaled<P: Product>(&self, b: f64) -> Self {
+        let mut product = Expansion::zero();
+        let mut q = 0.0;
+        for (i, &part) in self.part[..self.len].iter().enumerate() {
+            let (p, e) = P::two_product(part, b);
+            if i == 0 {
+                product.push(e);
+                q = p;
+            } else {
+                let (s, f) = two_sum(q, e);
+                product.push(f);
+                let (t, g) = fast_two_sum(p, s);
+                product.push(g);
+                q = t;
+            }
+        }
+        product.push(q);
+        product
+    }
+
+    /// Adds another expansion.
+    fn add_all(&mut self, b: &Expansion) {
+        for &part in &b.part[..b.len] {
+            self.add(part);
+        }
+    }
+
+    fn is_zero(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The value to twice the precision.
+    fn to_double(self) -> Double {
+        let mut high = 0.0;
+        let mut low = 0.0;
+        for &part in &self.part[..self.len] {
+            let (s, e) = two_sum(part, high);
+            low = e;
+            high = s;
+        }
+        // The parts were added from below: one more pass from above recovers what the last rounding left.
+        let mut rest = self;
+        rest.add(-high);
+        for &part in &rest.part[..rest.len] {
+            low = if part == rest.part[0] { part } else { low + part };
+        }
+        if rest.len == 0 {
+            low = 0.0;
+        }
+        let (high, low) = fast_two_sum(high, low);
+        Double { high, low }
+    }
+}
+
+/// The polynomial in the variable `x - s`, each coefficient rounded once to double-double.
+pub(super) fn shifted<P: Product>(p: &Polynomial, s: f64) -> Polynomial {
+    let Local { c, y, exponent, .. } = p.local(Double::from(s));
+    let y = y.high;
+    // Binomial coefficients of the k-th Taylor coefficient: C(i, k).
+    const BINOMIAL: [[f64; 5]; 5] = [
+        [1.0, 1.0, 1.0, 1.0, 1.0],
+        [0.0, 1.0, 2.0, 3.0, 4.0],
+        [0.0, 0.0, 1.0, 3.0, 6.0],
+        [0.0, 0.0, 0.0, 1.0, 4.0],
+        [0.0, 0.0, 0.0, 0.0, 1.0],
+    ];
+    let mut shifted = [Double::ZERO; 5];
+    for (k, (shifted, binomial)) in shifted.iter_mut().zip(&BINOMIAL).enumerate() {
+        let mut sum = Expansion::zero();
+        for i in (k..5).rev() {
+            sum = sum.scaled::<P>(y);
+            // 3, and 6 = 3 * 2, times a number of 53 bits is the sum of two numbers.
+            let (high, low) = (c[i].high, c[i].low);
+            match binomial[i] {
+                3.0 => [2.0 * low, low, 2.0 * high, high].iter().for_each(|&b| sum.add(b)),
+                6.0 => [4.0 * low, 2.0 * low, 4.0 * high, 2.0 * high].iter().for_each(|&b| sum.add(b)),
+                b => sum.add_double(c[i].scale_exact(b)),
+            }
+        }
+        *shifted = sum.to_double();
+    }
+    Polynomial::stretched(&shifted, exponent, p.degree())
+}
+
+/// The multiplicity of the multiple root that `p`, a polynomial with `f64` coefficients, has at `x`, or `None` if it has
+/// no multiple root there. `x` is that root to 2^-60, relative, if there is one.
+///
+/// If the polynomial has only one multiple root, that root is rational, and by Gauss's lemma the square of its denominator
+/// divides the leading coefficient and that of its numerator the trailing one: it is `2^j a / b` with odd
+/// `a, b < 2^26.5`. The only alternative is the square of a quadratic.
+pub(super) fn multiple_root<P: Product>(p: &Polynomial, x: Double) -> Option<u32> {
+    let local = p.local(x);
+    if local.dropped || local.c.iter().any(|c| c.low != 0.0) {
+        return None;
+    }
+    let c = local.c.map(|c| c.high);
+    if let Some((numerator, denominator)) = fraction::<P>(local.y) {
+        let multiplicity = multiplicity_at::<P>(&c, numerator, denominator, p.degree());
+        if multiplicity > 1 {
+            return Some(multiplicity);
+        }
+    }
+    if p.degree() == 4 && is_square::<P>(&c) { Some(2) } else { None }
+}
+
+/// The fraction with a denominator up to 2^27 that is nearest to `y`, `1 <= |y| < 2`, if it is nearer than any two such
+/// fractions can be to one number: by continued fractions.
+fn fraction<P: Product>(y: Double) -> Option<(f64, f64)> {
+    const LIMIT: f64 = 134_217_728.0;
+    let (mut rest, sign) = if y.high < 0.0 { (-y, -1.0) } else { (y, 1.0) };
+    let (mut n0, mut d0, mut n1, mut d1) = (0.0, 1.0, 1.0, 0.0);
+    // The denominators grow at least as the Fibonacci numbers: 40 steps reach 2^27.
+    for _ in 0..42 {
+        let whole = floor(rest.high);
+        let whole = if rest.high == whole && rest.low < 0.0 { whole - 1.0 } else { whole };
+        let (n2, d2) = (whole * n1 + n0, whole * d1 + d0);
+        if !(d2 <= LIMIT) {
+            return None;
+        }
+        (n0, d0, n1, d1) = (n1, d1, n2, d2);
+        // |y - n / d| < 2^-56: two fractions below the limit differ by 2^-54 or more.
+        let difference = Double::from(n1) - (if y.high < 0.0 { -y } else { y }).scale::<P>(d1);
+        if difference.high.abs() <= d1 * (1.0 / 72_057_594_037_927_936.0) {
+            return Some((sign * n1, d1));
+        }
+        let remainder = rest - whole;
+        if remainder.high <= 0.0 {
+            return None;
+        }
+        rest = Double::ONE.div::<P>(remainder);
+    }
+    None
+}
+
+/// The largest whole number up to `x`, `0 <= x < 2^53`.
+fn floor(x: f64) -> f64 {
+    libm::floor(x)
+}
+
+/// How often `n / d` is a root of the polynomial, exactly. `n` and `d` are whole numbers up to 2^28.
+fn multiplicity_at<P: Product>(c: &[f64; 5], n: f64, d: f64, degree: usize) -> u32 {
+    for order in 0..degree {
+        // The order-th derivative over order!, times d^(degree - order), term by term.
+        let mut sum = Expansion::zero();
+        for (i, &c) in c.iter().enumerate().take(degree + 1).skip(order) {
+            let mut term = Expansion::zero();
+            term.add(c);
+            for _ in 0..i - order {
+                term = term.scaled::<P>(n);
+            }
+            for _ in 0..degree - i {
+                term = term.scaled::<P>(d);
+            }
+            sum.add_all(&term.scaled::<P>(binomial(i, order)));
+        }
+        if !sum.is_zero() {
+            return order as u32;
+        }
+    }
+    degree as u32
+}
+
+fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// Whether the quartic is a constant times the square of a quadratic:
+/// `c4 (x^2 + u x + v)^2` has `c1^2 c4 = c3^2 c0` and `4 c4 c2 c3 = c3^3 + 8 c4^2 c1`, or `c3 = c1 = 0` and
+/// `c2^2 = 4 c4 c0`.
+fn is_square<P: Product>(c: &[f64; 5]) -> bool {
+    let product = |factors: &[f64]| {
+        let mut e = Expansion::zero();
+        e.add(1.0);
+        factors.iter().fold(e, |e, &f| e.scaled::<P>(f))
+    };
+    let [c0, c1, c2, c3, c4] = *c;
+    if c3 == 0.0 {
+        let mut e = product(&[c2, c2]);
+        e.add_all(&product(&[-4.0, c4, c0]));
+        return c1 == 0.0 && e.is_zero();
+    }
+    let mut e = product(&[c1, c1, c4]);
+    e.add_all(&product(&[-c3, c3, c0]));
+    if !e.is_zero() {
+        return false;
+    }
+    let mut e = product(&[4.0, c4, c2, c3]);
+    e.add_all(&product(&[-c3, c3, c3]));
+    e.add_all(&product(&[-8.0, c4, c4, c1]));
+    e.is_zero()
+}

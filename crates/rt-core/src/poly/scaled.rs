@@ -1,0 +1,234 @@
+//! A polynomial whose coefficients carry their own exponents, and its value in double-double.
+//!
+//! With `x = y 2^e`, `1 <= |y| < 2`, the terms are `c_k 2^(ek) y^k`. A common power of two brings the largest of the
+//! scaled coefficients to about 1, so that no product overflows, whatever the coefficients. What then lies below
+//! 2^-400 is dropped: it is far below the resolution of any comparison made here, and the exact tests take a dropped
+//! term as a proof that the sum is not zero.
+
+use crate::double::Double;
+use crate::kernel::Product;
+use crate::math::{exp2i, exponent};
+
+/// `x 2^power` for any power; below the normal range it may be rounded more than once.
+#[inline]
+pub(super) fn ldexp(x: f64, power: i32) -> f64 {
+    let part = (power / 3).clamp(-1022, 1023);
+    let rest = (power - 2 * part).clamp(-1022, 1023);
+    x * exp2i(part) * exp2i(part) * exp2i(rest)
+}
+
+/// A number with its exponent taken out: `mantissa 2^exponent`, `1 <= |mantissa| < 2`, or zero.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    mantissa: Double,
+    exponent: i32,
+}
+
+impl Term {
+    const ZERO: Term = Term { mantissa: Double::ZERO, exponent: 0 };
+
+    fn new(value: Double, power: i32) -> Self {
+        if value.high == 0.0 {
+            return Term::ZERO;
+        }
+        let e = exponent(value.high);
+        if e < -900 {
+            // Subnormal, or near it: lifted first, exactly.
+            let lifted = value.scale_exact(exp2i(600));
+            let e = exponent(lifted.high);
+            return Term { mantissa: lifted.scale_exact(exp2i(-e)), exponent: e - 600 + power };
+        }
+        let half = exp2i(-(e / 2));
+        let rest = exp2i(-(e - e / 2));
+        Term { mantissa: value.scale_exact(half).scale_exact(rest), exponent: e + power }
+    }
+}
+
+/// A polynomial of degree at most four with double-double coefficients of any exponent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Polynomial {
+    terms: [Term; 5],
+    degree: usize,
+}
+
+/// The value of a polynomial and of its derivatives about `x = y 2^exponent`, all in terms of `y`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Value {
+    /// The value, up to a common power of two.
+    pub value: Double,
+    /// A bound on its error.
+    pub error: f64,
+    /// The first derivative.
+    pub slope: f64,
+    /// Half the second derivative.
+    pub curvature: f64,
+    /// The exponent of `y`.
+    pub exponent: i32,
+}
+
+/// The terms at `x = y 2^exponent`, scaled to about one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Local {
+    /// The scaled coefficients of `y`.
+    pub c: [Double; 5],
+    /// Where: `1 <= |y| < 2`, or zero.
+    pub y: Double,
+    /// The exponent of `y`.
+    pub exponent: i32,
+    /// The common power of two that was taken out.
+    pub power: i32,
+    /// Whether a term was too small to keep.
+    pub dropped: bool,
+}
+
+impl Polynomial {
+    /// The polynomial with these coefficients, ascending powers; leading zeros lower the degree. `c` must be finite.
+    pub fn new(c: &[Double]) -> Self {
+        let mut terms = [Term::ZERO; 5];
+        let mut degree = 0;
+        for (i, (term, &c)) in terms.iter_mut().zip(c).enumerate() {
+            *term = Term::new(c, 0);
+            if c.high != 0.0 {
+                degree = i;
+            }
+        }
+        Polynomial { terms, degree }
+    }
+
+    /// As [`new`](Self::new), with the coefficient of `x^k` times `2^(-k exponent)`: from `y` back to `x = y 2^exponent`.
+    pub fn stretched(c: &[Double; 5], exponent: i32, degree: usize) -> Self {
+        let mut terms = [Term::ZERO; 5];
+        for (k, (term, &c)) in terms.iter_mut().zip(c).enumerate() {
+            *term = Term::new(c, -(exponent * k as i32));
+        }
+        Polynomial { terms, degree }
+    }
+
+    /// The degree.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Whether the constant term is zero.
+    pub fn vanishes_at_zero(&self) -> bool {
+        self.terms[0].mantissa.high == 0.0
+    }
+
+    /// Divided by `x`.
+    pub fn deflated(&self) -> Self {
+        let t = &self.terms;
+        Polynomial { terms: [t[1], t[2], t[3], t[4], Term::ZERO], degree: self.degree.saturating_sub(1) }
+    }
+
+    /// The derivative, exactly: the multiples by 2, 3 and 4 of a double-double with 106 bits are rounded to 2^-105 at
+    /// most, those of a `f64` are exact.
+    pub fn derivative(&self) -> Self {
+        let mut terms = [Term::ZERO; 5];
+        for k in 1..=self.degree {
+            let c = self.terms[k];
+            let m = match k {
+                1 => c.mantissa,
+                2 => c.mantissa.scale_exact(2.0),
+                3 => c.mantissa.scale_exact(2.0) + c.mantissa,
+                _ => c.mantissa.scale_exact(4.0),
+            };
+            terms[k - 1] = Term::new(m, c.exponent);
+        }
+        Polynomial { terms, degree: self.degree.saturating_sub(1) }
+    }
+
+    /// The sign far to the right (`side` = 1) or to the left (`side` = -1).
+    pub fn sign_at_infinity(&self, side: i32) -> i32 {
+        let lead = if self.terms[self.degree].mantissa.high > 0.0 { 1 } else { -1 };
+        if side < 0 && self.degree % 2 == 1 { -lead } else { lead }
+    }
+
+    /// A power of two beyond every root, as its exponent: Fujiwara's bound `2 max |c_(n-k) / c_n|^(1/k)`, where a ratio
+    /// is below 2 to the power of the difference of the exponents plus 1.
+    pub fn bound_exponent(&self) -> i32 {
+        let lead = self.terms[self.degree].exponent;
+        let mut bound = -1100;
+        for k in 1..=self.degree {
+            let term = self.terms[self.degree - k];
+            if term.mantissa.high != 0.0 {
+                let ratio = term.exponent - lead + 1;
+                bound = bound.max(ratio.div_euclid(k as i32) + 1);
+            }
+        }
+        bound + 1
+    }
+
+    /// The exponent at which the constant term and the next one balance: where to look about `x = 0`.
+    fn balance(&self) -> i32 {
+        let t = &self.terms;
+        if t[0].mantissa.high == 0.0 {
+            return 0;
+        }
+        for k in 1..=self.degree {
+            if t[k].mantissa.high != 0.0 {
+                return (t[0].exponent - t[k].exponent).div_euclid(k as i32);
+            }
+        }
+        0
+    }
+
+    /// The terms as seen at `x`.
+    #[inline]
+    pub fn local(&self, x: Double) -> Local {
+        let (y, e) = if x.high == 0.0 {
+            (Double::ZERO, self.balance())
+        } else {
+            let t = Term::new(x, 0);
+            (t.mantissa, t.exponent)
+        };
+        let mut power = i32::MIN;
+        for (k, t) in self.terms.iter().enumerate() {
+            if t.mantissa.high != 0.0 {
+                power = power.max(t.exponent + e * k as i32);
+            }
+        }
+        let mut c = [Double::ZERO; 5];
+        let mut dropped = false;
+        for (k, (c, t)) in c.iter_mut().zip(&self.terms).enumerate() {
+            if t.mantissa.high != 0.0 {
+                let shift = t.exponent + e * k as i32 - power;
+                if shift >= -400 {
+                    *c = t.mantissa.scale_exact(exp2i(shift));
+                } else {
+                    dropped = true;
+                }
+            }
+        }
+        Local { c, y, exponent: e, power, dropped }
+    }
+
+    /// Value, slope and curvature at `x`.
+    #[inline]
+    pub fn at<P: Product>(&self, x: Double) -> Value {
+        self.local(x).value::<P>()
+    }
+}
+
+impl Local {
+    /// Value, slope and curvature by Horner's rule.
+    ///
+    /// Each of the four steps rounds a product (5 u^2) and a sum (3 u^2, of its terms), u = 2^-53: with the error of the
+    /// coefficients, below 40 u^2 of the sum of the magnitudes of the terms. A low part more, and the bound's own
+    /// rounding, stay within 2^-100.
+    #[inline(always)]
+    pub fn value<P: Product>(&self) -> Value {
+        const ERROR: f64 = exp2i(-100);
+        let (c, y) = (&self.c, self.y);
+        let mut value = c[4];
+        let mut slope = Double::ZERO;
+        let mut curvature = 0.0;
+        let mut size = c[4].high.abs();
+        for k in (0..4).rev() {
+            curvature = curvature * y.high + slope.high;
+            slope = slope.mul::<P>(y) + value;
+            value = value.mul::<P>(y) + c[k];
+            size = size * y.high.abs() + c[k].high.abs();
+        }
+        Value { value, error: size * ERROR, slope: slope.to_f64(), curvature, exponent: self.exponent }
+    }
+}

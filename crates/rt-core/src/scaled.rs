@@ -1,0 +1,129 @@
+//! Rays in a shape's own scale: exact powers of two that keep every product in range.
+
+use crate::Error;
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::math::{exp2i, exponent};
+use crate::{Hit, Interval, Ray};
+use glam::DVec3;
+
+/// `x * 2^k`, rounded once unless the result is subnormal, for any `|k| <= 3000`.
+#[inline]
+pub(crate) fn times_power(x: f64, k: i32) -> f64 {
+    let k = k.clamp(-3000, 3000);
+    if k.abs() <= 1000 {
+        return x * exp2i(k);
+    }
+    let step = if k > 0 { 1000 } else { -1000 };
+    times_power(x * exp2i(step), k - step)
+}
+
+/// A ray relative to a shape's anchor, in units of a power of two: `relative + t * direction`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScaledRay {
+    /// The origin minus the anchor, exactly, in units of `2^exponent` of the shape.
+    pub relative: DoubleVector,
+    /// The direction, its largest component in `[1, 2)`.
+    pub direction: DVec3,
+    /// `t` in the units of the given ray is `2^power` times the `t` here.
+    pub power: i32,
+}
+
+impl ScaledRay {
+    /// `None` for a ray that is not valid, or that starts more than 2^900 units away: no `f64` ray aims that well.
+    ///
+    /// `unit` is the exponent of the shape's size, in `-600..=600`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, anchor: DVec3, unit: i32) -> Option<ScaledRay> {
+        let mut direction = ray.direction;
+        let mut shift = exponent(largest(direction));
+        if shift < -1000 {
+            // Subnormal components: first into the range where the exponent can be read.
+            direction *= exp2i(200);
+            shift = exponent(largest(direction));
+            if shift == -1023 {
+                return None;
+            }
+            direction *= exp2i(-shift);
+            shift -= 200;
+        } else if shift < 1024 {
+            // In two steps, since 2^-1023 is not a normal number.
+            let half = shift / 2;
+            direction = direction * exp2i(-half) * exp2i(half - shift);
+        } else {
+            return None;
+        }
+        // Components below 2^-160 of the largest turn the ray by less than any margin that f64 can express; without
+        // them all products stay in the range where they are exact.
+        let negligible = exp2i(-160);
+        let keep = |x: f64| if x.abs() < negligible { 0.0 } else { x };
+        let direction = DVec3::new(keep(direction.x), keep(direction.y), keep(direction.z));
+        let relative = DoubleVector::difference(ray.origin, anchor).scale_exact(exp2i(-unit));
+        // False for NaN too.
+        if !(largest(relative.high()) < exp2i(900)) || !relative.high().is_finite() {
+            return None;
+        }
+        Some(ScaledRay { relative, direction, power: unit - shift })
+    }
+
+    /// A parameter here in the units of the given ray.
+    #[inline(always)]
+    pub fn unscale(&self, t: Double) -> Double {
+        if self.power == 0 {
+            return t;
+        }
+        Double { high: times_power(t.high, self.power), low: times_power(t.low, self.power) }
+    }
+}
+
+/// The largest absolute value of the components.
+#[inline(always)]
+pub(crate) fn largest(v: DVec3) -> f64 {
+    let v = v.abs();
+    let m = if v.x >= v.y { v.x } else { v.y };
+    if m >= v.z { m } else { v.z }
+}
+
+/// Lengths and coordinates up to this are accepted: the promised 1e150 and a margin.
+const LARGEST: f64 = exp2i(520);
+/// Positive lengths down to this are accepted: the promised 1e-150 and a margin.
+const SMALLEST: f64 = exp2i(-520);
+
+/// Checks a length that must be positive, finite and in range.
+pub(crate) fn checked_length(what: &'static str, value: f64) -> Result<f64, Error> {
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(Error::NotPositive { what, value });
+    }
+    if !(SMALLEST..=LARGEST).contains(&value) {
+        return Err(Error::OutOfRange { what, value });
+    }
+    Ok(value)
+}
+
+/// Checks a point: finite and in range.
+pub(crate) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, Error> {
+    if !value.is_finite() {
+        return Err(Error::NotFinite { what, value });
+    }
+    if largest(value) > LARGEST {
+        return Err(Error::OutOfRange { what, value: largest(value) });
+    }
+    Ok(value)
+}
+
+/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it.
+#[inline(always)]
+pub(crate) fn admit(within: Interval, t: Double, part: u32, root: u32) -> Option<Hit> {
+    // `t` against an end: exact, since `high` is the nearest number to the sum.
+    let after = t.high > within.min || (t.high == within.min && t.low > 0.0);
+    let before = t.high < within.max || (t.high == within.max && t.low < 0.0);
+    if after && before { within.admit(t.high, part, root) } else { None }
+}
+
+/// The exit of a ray that starts on the shape and runs inside: a crossing at or before the start is the start's
+/// own rounding and counts as the next number after the start.
+#[inline]
+pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Option<Hit> {
+    let t = if t > 0.0 { t } else { 0.0 };
+    within.admit(if t > within.min { t } else { within.min.next_up() }, part, root)
+}

@@ -1,0 +1,229 @@
+//! A checked scene, ready to be rendered.
+
+use crate::light::check_color;
+use crate::medium::Medium;
+use crate::texture::Mapping;
+use crate::{Camera, Color, Error, Light, Material, Paint, Texture};
+use rt_core::{Geometry, GeometryBuilder, Shape};
+
+/// What is known of an object beside its shape.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Object {
+    /// Its name, for messages. May be empty and need not be unique.
+    pub name: String,
+    /// The index of its material in the scene.
+    pub material: u32,
+    /// Whether light passes it as if it were not there.
+    pub no_shadow: bool,
+}
+
+/// A checked scene: nothing in it can make rendering fail, except a shape or a texture of your own.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) camera: Camera,
+    pub(crate) background: Color,
+    pub(crate) ambient: Color,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) textures: Vec<Texture>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) geometry: Geometry,
+    /// By object: what it leaves of the light of a lamp.
+    pub(crate) blocks: Vec<Blocks>,
+    /// By object: how its texture coordinates lead to a picture.
+    pub(crate) mappings: Vec<Mapping>,
+    /// The media that the eye is in.
+    pub(crate) around_eye: Vec<Medium>,
+}
+
+/// What an object leaves of the light of a lamp at each crossing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Blocks {
+    /// Nothing of it.
+    All,
+    /// A share of it.
+    Some(Color),
+    /// All of it.
+    Nothing,
+}
+
+impl Scene {
+    /// An empty builder.
+    pub fn builder() -> SceneBuilder {
+        SceneBuilder::default()
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The lamps.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// The materials, by index.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// The textures, by index.
+    pub fn textures(&self) -> &[Texture] {
+        &self.textures
+    }
+
+    /// The objects, by index: the same indices as the shapes of [`Scene::geometry`].
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// The shapes, ready for rays.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// What rays see that hit nothing.
+    pub fn background(&self) -> Color {
+        self.background
+    }
+
+    /// The light that comes from everywhere.
+    pub fn ambient(&self) -> Color {
+        self.ambient
+    }
+}
+
+/// Collects the parts of a [`Scene`].
+///
+/// The methods named `add_` return the index of what they added; the others return the builder.
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    camera: Option<Camera>,
+    background: Color,
+    ambient: Color,
+    lights: Vec<Light>,
+    textures: Vec<Texture>,
+    materials: Vec<Material>,
+    objects: Vec<Object>,
+    geometry: GeometryBuilder,
+}
+
+impl SceneBuilder {
+    /// The camera: the one thing that a scene must have.
+    pub fn camera(mut self, camera: Camera) -> Self {
+        self.camera = Some(camera);
+        self
+    }
+
+    /// What rays see that hit nothing. Default: black.
+    pub fn background(mut self, color: impl Into<Color>) -> Self {
+        self.background = color.into();
+        self
+    }
+
+    /// The light that comes from everywhere. Default: black.
+    pub fn ambient(mut self, color: impl Into<Color>) -> Self {
+        self.ambient = color.into();
+        self
+    }
+
+    /// One more lamp.
+    pub fn light(mut self, light: Light) -> Self {
+        self.lights.push(light);
+        self
+    }
+
+    /// One more object, with a material of its own.
+    pub fn object(mut self, name: impl Into<String>, shape: impl Into<Shape>, material: Material) -> Self {
+        let material = self.add_material(material);
+        self.add_object(Object { name: name.into(), material, no_shadow: false }, shape);
+        self
+    }
+
+    /// One more lamp; its index.
+    pub fn add_light(&mut self, light: Light) -> u32 {
+        self.lights.push(light);
+        (self.lights.len() - 1) as u32
+    }
+
+    /// One more texture; its index, for [`Paint::Texture`].
+    pub fn add_texture(&mut self, texture: Texture) -> u32 {
+        self.textures.push(texture);
+        (self.textures.len() - 1) as u32
+    }
+
+    /// One more material; its index, for [`Object::material`]. Objects of one material are one medium: glass made of
+    /// many polygons takes one material.
+    pub fn add_material(&mut self, material: Material) -> u32 {
+        self.materials.push(material);
+        (self.materials.len() - 1) as u32
+    }
+
+    /// One more object; its index.
+    pub fn add_object(&mut self, object: Object, shape: impl Into<Shape>) -> u32 {
+        self.objects.push(object);
+        self.geometry.push(shape)
+    }
+
+    /// Checks everything and prepares the shapes for rays.
+    ///
+    /// # Errors
+    /// [`Error::NoCamera`], [`Error::NoMaterial`], [`Error::NoTexture`], [`Error::Material`], [`Error::Color`],
+    /// [`Error::TooManyObjects`].
+    pub fn build(self) -> Result<Scene, Error> {
+        let camera = self.camera.ok_or(Error::NoCamera)?;
+        check_color("background", self.background)?;
+        check_color("ambient", self.ambient)?;
+        let most = u32::MAX as usize - 1;
+        if self.objects.len() > most {
+            return Err(Error::TooManyObjects { count: self.objects.len(), most });
+        }
+        for (index, material) in self.materials.iter().enumerate() {
+            let index = index as u32;
+            material.check().map_err(|e| Error::Material { material: index, source: Box::new(e) })?;
+            if let Paint::Texture(texture) = material.paint
+                && texture as usize >= self.textures.len()
+            {
+                let count = self.textures.len();
+                return Err(Error::NoTexture { material: index, texture, count });
+            }
+        }
+        for object in &self.objects {
+            if object.material as usize >= self.materials.len() {
+                let (object, material) = (object.name.clone(), object.material);
+                return Err(Error::NoMaterial { object, material, count: self.materials.len() });
+            }
+        }
+        let blocks = self.objects.iter().map(|object| {
+            let transmit = self.materials[object.material as usize].transmit;
+            match object.no_shadow {
+                true => Blocks::Nothing,
+                false if transmit.is_black() => Blocks::All,
+                false if transmit == Color::WHITE => Blocks::Nothing,
+                false => Blocks::Some(transmit),
+            }
+        });
+        let blocks = blocks.collect();
+        let geometry = self.geometry.build();
+        let mappings = geometry.shapes().iter().map(|shape| match shape {
+            Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
+            Shape::Torus(_) => Mapping::Ring,
+            _ => Mapping::Sheet,
+        });
+        let mappings = mappings.collect();
+        Ok(Scene {
+            camera,
+            background: self.background,
+            ambient: self.ambient,
+            lights: self.lights,
+            textures: self.textures,
+            materials: self.materials,
+            objects: self.objects,
+            geometry,
+            blocks,
+            mappings,
+            around_eye: Vec::new(),
+        })
+    }
+}
