@@ -1,6 +1,6 @@
 //! Textures: colours as functions of the place on a surface.
 
-use crate::{Color, Error};
+use crate::{Color, Error, guard};
 use rt_core::Surface;
 use rt_core::glam::{DVec2, DVec3};
 use std::fmt;
@@ -42,12 +42,12 @@ pub(crate) enum Mapping {
 impl Texture {
     /// The colour at this place of a surface.
     #[inline]
-    pub(crate) fn color(&self, at: &Surface, mapping: Mapping) -> Color {
+    pub(crate) fn color(&self, at: &Surface, mapping: Mapping, object: u32) -> Color {
         match self {
             Texture::Solid(color) => *color,
             Texture::Checker(checker) => checker.color(at.object_point),
             Texture::Image(image) => image.color(at.uv, mapping),
-            Texture::Custom(pattern) => pattern.color(at),
+            Texture::Custom(pattern) => guard::color(object, &**pattern, at),
         }
     }
 }

@@ -10,7 +10,6 @@
 //! Light is only added, never taken away: two shadows that overlap are as dark as one. The sum is taken in the order of
 //! the lamps.
 
-use crate::guard;
 use crate::material::{Optics, Paint};
 use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
@@ -113,9 +112,9 @@ impl<'s> Tracer<'s> {
         let paint = match material.paint {
             Paint::Color(color) => color,
             Paint::Texture(texture) => {
-                let object = v.found.object as usize;
-                let color = scene.textures[texture as usize].color(&v.surface, scene.mappings[object]);
-                guard::checked_color(v.found.object, color)
+                let object = v.found.object;
+                let mapping = scene.mappings[object as usize];
+                scene.textures[texture as usize].color(&v.surface, mapping, object)
             }
         };
         let body = paint * material.diffuse;

@@ -4,6 +4,7 @@ use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U
 use crate::double::Double;
 use crate::kernel::{Product, Task, run};
 use crate::math::sqrt;
+use crate::scaled::{checked_length, checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
@@ -30,9 +31,9 @@ impl Disk {
     /// [`Error::NotFinite`], [`Error::ZeroLength`] for the normal, [`Error::NotPositive`] for the radius,
     /// [`Error::OutOfRange`] for lengths beyond 1e150 and a radius below 1e-150.
     pub fn new(center: impl Into<DVec3>, normal: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
-        let center = flat::checked_point("disk center", center.into())?;
+        let center = checked_point("disk center", center.into())?;
         let (normal, _) = flat::prescaled(flat::checked_direction("disk normal", normal.into())?);
-        let radius = flat::checked_length("disk radius", radius)?;
+        let radius = checked_length("disk radius", radius)?;
         let (first, second) = flat::plane_axes(normal);
         let unit_normal = flat::unit(flat::doubles(normal));
         Ok(Disk { center, normal, radius, unit_normal, axes: [first, second] })
@@ -96,9 +97,9 @@ impl Task for InDisk<'_> {
     fn run<P: Product>(self) -> bool {
         // In units of the radius, so that no square over- or underflows; far outside is decided before.
         let power = crate::math::exponent(self.radius);
-        let radius = flat::scaled(self.radius, -power);
+        let radius = times_power(self.radius, -power);
         let shift = self.at.power - power;
-        let part = |x: Double| Double { high: flat::scaled(x.high, shift), low: flat::scaled(x.low, shift) };
+        let part = |x: Double| Double { high: times_power(x.high, shift), low: times_power(x.low, shift) };
         let [x, y, z] = self.at.local.map(part);
         let far = |x: Double| !(x.high.abs() <= 4.0);
         if far(x) || far(y) || far(z) {

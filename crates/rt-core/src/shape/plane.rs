@@ -5,6 +5,7 @@
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
 use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U};
+use crate::scaled::checked_point;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
@@ -30,7 +31,7 @@ impl Plane {
     /// # Errors
     /// [`Error::NotFinite`], [`Error::ZeroLength`] for the normal, [`Error::OutOfRange`] for a point beyond 1e150.
     pub fn new(point: impl Into<DVec3>, normal: impl Into<DVec3>) -> Result<Self, Error> {
-        let point = flat::checked_point("plane point", point.into())?;
+        let point = checked_point("plane point", point.into())?;
         let (normal, _) = flat::prescaled(flat::checked_direction("plane normal", normal.into())?);
         let (first, second) = flat::plane_axes(normal);
         Ok(Plane { point, normal, unit_normal: flat::unit(flat::doubles(normal)), axes: [first, second] })
