@@ -4,6 +4,7 @@ mod exact;
 mod extrema;
 mod filter;
 mod frame;
+mod leaving;
 mod line;
 mod record;
 
@@ -12,10 +13,11 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{ScaledRay, admit, checked_length, checked_point, largest};
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use filter::{Filter, Verdict};
 use frame::Frame;
 use glam::DVec3;
+use leaving::Leave;
 use line::Line;
 use record::{Near, Thorough};
 
@@ -245,4 +247,27 @@ impl Primitive for Torus {
         let grown = reach + (self.center.abs() + reach) * (2.0 * UNIT);
         Some(Aabb::new(self.center - grown, self.center + grown))
     }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        let ray = self.scaled(ray)?;
+        let mut first = None;
+        let each = |hit| {
+            first = Some(hit);
+            false
+        };
+        kernel::run(Leave { torus: self, ray: &ray, within, from, first: true, each });
+        first
+    }
+
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        let Some(ray) = self.scaled(ray) else { return };
+        let each = |hit| {
+            each(hit);
+            true
+        };
+        kernel::run(Leave { torus: self, ray: &ray, within, from, first: false, each });
+    }
 }
+
+#[cfg(test)]
+mod tests;
