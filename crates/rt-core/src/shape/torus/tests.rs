@@ -129,6 +129,19 @@ fn coordinates_on_the_tube() {
 }
 
 #[test]
+fn other_solvers() {
+    use crate::poly::quartic;
+    let torus = Torus::new([1.0, 2.0, 3.0], [1.0, 2.0, -1.0], 2.0, 0.5).unwrap();
+    let ray = Ray::new([7.0, 8.0, 9.5], [-1.1, -1.0, -1.2]);
+    let ours = torus.hit(&ray, Interval::FORWARD).unwrap();
+    for solver in [quartic::quartic, quartic::ferrari, quartic::graphics_gems] {
+        let theirs = torus.hit_with(&ray, Interval::FORWARD, solver).unwrap();
+        assert_eq!(theirs.root(), ours.root());
+        assert!((theirs.t() - ours.t()).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn what_cannot_be_a_torus() {
     let zero = [0.0, 0.0, 0.0];
     assert!(matches!(Torus::new(zero, zero, 2.0, 1.0), Err(Error::ZeroLength { .. })));
