@@ -14,7 +14,7 @@ mod bounds;
 pub mod double;
 mod double_vector;
 mod error;
-
+mod expansion;
 mod frame;
 pub mod geometry;
 mod hit;

@@ -1,39 +1,476 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use glam::DVec3;
+//! A box: `min <= p <= max` in each coordinate of its own axes.
+//!
+//! `hit` clips the ray by three pairs of planes (Kay and Kajiya 1986, Ray Tracing Complex Scenes, doi:10.1145/15922.15916).
+//! Along the world's axes each parameter `(min - o) / d` has a relative error of three roundings, so the order of
+//! two of them is certain unless they agree to 4 u; then they are compared exactly, as fractions. A turned box takes
+//! the ray into its own axes first and carries the absolute errors of that.
 
-/// Cuboid.
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use crate::double::Double;
+use crate::expansion::Expansion;
+use crate::kernel::{Product, Task, run};
+use crate::math::exp2i;
+use crate::scaled::{checked_point, times_power};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
+use core::cmp::Ordering;
+use glam::{DMat3, DVec2, DVec3};
+
+/// A solid box, along the world's axes or turned. It may be flat.
+///
+/// # Parts
+/// 0 and 1 are the faces where the first coordinate is least and greatest, 2 and 3 those of the second, 4 and 5
+/// those of the third. The normal points out of the box. Root 0 enters the box, root 1 leaves it. A line that touches
+/// an edge or a corner without entering does not hit; one that runs within a face enters and leaves by the others.
+///
+/// # Texture coordinates
+/// The anchor of local coordinates is the corner that was `min`; `object_point` counts along the box's own axes.
+/// `uv` run from 0 to 1 across each face, v upward along the second axis (on the faces 2 and 3 along the third:
+/// away from the face 5, and towards it), u to the right as seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
+    turn: Option<Turn>,
 }
+
+/// A turned box fills `0 <= axes . (p - corner) <= size`: `min` is zero and `max` the size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn {
+    /// Where the corner `min` is.
+    corner: DVec3,
+    /// The box's own axes in the world.
+    axes: [DVec3; 3],
+}
+
+const WORLD: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
 
 impl Cuboid {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The box between two corners.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for coordinates beyond 1e150, [`Error::Unordered`] unless
+    /// `min <= max` in each coordinate.
     pub fn new(min: impl Into<DVec3>, max: impl Into<DVec3>) -> Result<Self, Error> {
-        let (min, max) = (min.into(), max.into());
-        Ok(Self { min, max })
+        let min = checked_point("cuboid corner", min.into())?;
+        let max = checked_point("cuboid corner", max.into())?;
+        if !min.cmple(max).all() {
+            return Err(Error::Unordered { min, max });
+        }
+        Ok(Cuboid { min, max, turn: None })
     }
 
-    /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    /// The corner that was given as the least, in the world: the anchor of local coordinates.
+    pub fn corner(&self) -> DVec3 {
+        self.turn.map_or(self.min, |turn| turn.corner)
+    }
+
+    /// The lengths of the edges along the box's own axes.
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The box's own axes in the world, as unit vectors.
+    pub fn axes(&self) -> [DVec3; 3] {
+        self.turn.map_or(WORLD, |turn| turn.axes)
+    }
+
+    /// Scaled, turned and moved. A turn makes it an oriented box.
+    ///
+    /// # Errors
+    /// As [`Cuboid::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        if self.turn.is_none() && by.rotation() == DMat3::IDENTITY {
+            return Cuboid::new(by.point(self.min), by.point(self.max));
+        }
+        let corner = checked_point("cuboid corner", by.point(self.corner()))?;
+        let max = checked_point("cuboid size", self.size() * by.scale())?;
+        let axes = self.axes().map(|axis| flat::unit(flat::doubles(by.direction(axis))));
+        Ok(Cuboid { min: DVec3::ZERO, max, turn: Some(Turn { corner, axes }) })
+    }
+
+    /// Both crossings with the line, in double-double: which faces and where, for the rays in doubt.
+    #[cold]
+    #[inline(never)]
+    fn span_exactly(&self, ray: &Ray) -> Option<[Crossing; 2]> {
+        if !ray.is_valid() { None } else { run(Span { cuboid: self, ray }) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let [near, far] = self.span_exactly(ray)?;
+        within.admit(near.t, near.face, 0).or_else(|| within.admit(far.t, far.face, 1))
+    }
+
+    /// The crossings with a box along the world's axes; `None` in doubt.
+    #[inline(always)]
+    fn span(&self, ray: &Ray) -> Slabs {
+        let inverse = 1.0 / ray.direction;
+        let a = (self.min - ray.origin) * inverse;
+        let b = (self.max - ray.origin) * inverse;
+        // Differences, quotients and products round three times; the fourth u pays for second order terms. Along an
+        // axis in which the ray does not move it lies between the planes or beside them: both parameters are infinite.
+        // Quotients of denormal directions, and a ray within a plane (0 times infinity), are left to exact arithmetic.
+        let size = ray.direction.abs();
+        let least = lesser(size.x, lesser(size.y, size.z));
+        let sound = size.x + size.y + size.z < exp2i(1000)
+            && (least > exp2i(-1000) || {
+                let moves =
+                    |d: f64, a: f64, b: f64| d > exp2i(-1000) || (d == 0.0 && !a.is_nan() && !b.is_nan());
+                moves(size.x, a.x, b.x) && moves(size.y, a.y, b.y) && moves(size.z, a.z, b.z)
+            });
+        Slabs { a, b, slack: LEAST_CERTAIN, sound, backward: inverse }
+    }
+
+    /// The crossings with a turned box.
+    #[inline(always)]
+    fn span_turned(&self, turn: &Turn, ray: &Ray) -> Slabs {
+        let (w, d) = (ray.origin - turn.corner, ray.direction);
+        let along = |v: DVec3| DVec3::new(turn.axes[0].dot(v), turn.axes[1].dot(v), turn.axes[2].dot(v));
+        let (start, inverse) = (along(w), 1.0 / along(d));
+        let a = (self.min - start) * inverse;
+        let b = (self.max - start) * inverse;
+        // With axes of length 1, the start errs by 4 u |w| (1-norm), the direction by 3 u |d|; then as above.
+        let (w, v) = (w.abs(), d.abs());
+        let lengths = (5.0 * U) * (w.x + w.y + w.z);
+        let turned = (4.0 * U) * (v.x + v.y + v.z) * a.abs().max(b.abs());
+        let error = (turned + lengths) * inverse.abs();
+        let reach = v.x + v.y + v.z;
+        let sound = reach > exp2i(-900) && reach < exp2i(1000);
+        let slack = greater(error.x, greater(error.y, error.z)) + LEAST_CERTAIN;
+        Slabs { a, b, slack, sound, backward: inverse }
     }
 }
 
-#[allow(unused_variables)]
+/// The parameters of the planes of the faces; each errs by `slack + 4 u |t|` at most.
+struct Slabs {
+    a: DVec3,
+    b: DVec3,
+    slack: f64,
+    sound: bool,
+    /// Of the sign of the direction.
+    backward: DVec3,
+}
+
+impl Slabs {
+    /// The first crossing; `Err` in doubt.
+    #[inline(always)]
+    fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
+        let (a, b) = (self.a, self.b);
+        let near = DVec3::new(lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z));
+        let far = DVec3::new(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z));
+        let (i, entry, before) = greatest(near);
+        // Products instead of `t - 4 u |t|`: an infinite parameter stays infinite.
+        let low = |t: f64| lesser(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) - self.slack;
+        let high = |t: f64| greater(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) + self.slack;
+        let leave = lesser(far.x, lesser(far.y, far.z));
+        if !self.sound {
+            return Err(());
+        }
+        if low(entry) > high(leave) {
+            return Ok(None);
+        }
+        if !(high(entry) < low(leave)) {
+            return Err(());
+        }
+        // Which face it is has to be certain, and on which side of the ends of the interval it lies.
+        if low(entry) > within.min {
+            if high(entry) < within.max && low(entry) > high(before) {
+                let back = !(self.backward[i] > 0.0);
+                return Ok(within.admit(entry, 2 * i as u32 + back as u32, 0));
+            }
+            return if low(entry) > within.max { Ok(None) } else { Err(()) };
+        }
+        if high(leave) < within.min || !(within.min < within.max) {
+            return Ok(None);
+        }
+        if high(entry) < within.min && low(leave) > within.min {
+            if low(leave) > within.max {
+                return Ok(None);
+            }
+            let (j, exit, after) = greatest(-far);
+            if high(leave) < within.max && low(-after) > high(-exit) {
+                let forward = self.backward[j] > 0.0;
+                return Ok(within.admit(-exit, 2 * j as u32 + forward as u32, 1));
+            }
+        }
+        Err(())
+    }
+}
+
+/// The index of the greatest component, the component, and the greatest of the others.
+#[inline(always)]
+fn greatest(v: DVec3) -> (usize, f64, f64) {
+    let (i, most, rest) = if v.x > v.y { (0, v.x, v.y) } else { (1, v.y, v.x) };
+    if v.z > most { (2, v.z, most) } else { (i, most, greater(rest, v.z)) }
+}
+
+/// One crossing of the line: the face, and the parameter correctly rounded.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    t: f64,
+    face: u32,
+}
+
+/// A parameter as a fraction with a positive denominator.
+#[derive(Clone, Copy, Debug)]
+struct Fraction {
+    numerator: Double,
+    denominator: Double,
+    face: u32,
+}
+
+impl Fraction {
+    /// The order of two fractions, exactly.
+    #[inline(always)]
+    fn order<P: Product>(&self, other: &Fraction) -> Ordering {
+        let mut difference = Expansion::ZERO;
+        difference.add_double_product::<P>(self.numerator, other.denominator);
+        difference.add_double_product::<P>(-other.numerator, self.denominator);
+        difference.sign().cmp(&0)
+    }
+}
+
+/// Where the line enters and leaves the box.
+struct Span<'a> {
+    cuboid: &'a Cuboid,
+    ray: &'a Ray,
+}
+
+impl Task for Span<'_> {
+    type Output = Option<[Crossing; 2]>;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Self::Output {
+        let (direction, direction_power) = flat::prescaled(self.ray.direction);
+        let Cuboid { min, max, turn } = self.cuboid;
+        let (o, lengths) = (self.ray.origin, *max - *min);
+        let power = flat::power_of(
+            (self.cuboid.corner() - o).abs().max((*max - o).abs() * turn.is_none() as u8 as f64).max(lengths),
+        );
+        let scale = exp2i(-power);
+        let (mut near, mut far): (Option<Fraction>, Option<Fraction>) = (None, None);
+        for i in 0..3 {
+            let (low, high, along) = match turn {
+                None => (
+                    Double::difference(min[i], o[i]).scale_exact(scale),
+                    Double::difference(max[i], o[i]).scale_exact(scale),
+                    Double::from(direction[i]),
+                ),
+                Some(turn) => turned_slab::<P>(turn, i, max[i], o, direction, scale),
+            };
+            let sign = along.high;
+            if sign == 0.0 {
+                if low.high > 0.0 || high.high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (first, second, denominator) =
+                if sign > 0.0 { (low, high, along) } else { (-high, -low, -along) };
+            let back = (sign < 0.0) as u32;
+            let entry = Fraction { numerator: first, denominator, face: 2 * i as u32 + back };
+            let exit = Fraction { numerator: second, denominator, face: 2 * i as u32 + 1 - back };
+            if near.is_none_or(|near| entry.order::<P>(&near).is_gt()) {
+                near = Some(entry);
+            }
+            if far.is_none_or(|far| exit.order::<P>(&far).is_lt()) {
+                far = Some(exit);
+            }
+        }
+        let (near, far) = (near?, far?);
+        // Equal parameters on two pairs of faces: an edge is touched. On one pair: the box is flat, and crossed.
+        let flat_pair = near.face / 2 == far.face / 2;
+        match near.order::<P>(&far) {
+            Ordering::Less => {}
+            Ordering::Equal if flat_pair => {}
+            _ => return None,
+        }
+        let crossing = |f: Fraction| Crossing {
+            t: times_power(f.numerator.div::<P>(f.denominator).to_f64(), power - direction_power),
+            face: f.face,
+        };
+        Some([crossing(near), crossing(far)])
+    }
+}
+
+/// A slab of a turned box: what is left to its two planes, and the speed across, each within 2^-104 of itself.
+#[inline(always)]
+fn turned_slab<P: Product>(
+    turn: &Turn,
+    i: usize,
+    size: f64,
+    o: DVec3,
+    d: DVec3,
+    scale: f64,
+) -> (Double, Double, Double) {
+    let (mut low, mut along) = (Expansion::ZERO, Expansion::ZERO);
+    for k in 0..3 {
+        let axis = turn.axes[i][k];
+        low.add_double_product::<P>(
+            Double::from(axis),
+            Double::difference(turn.corner[k], o[k]).scale_exact(scale),
+        );
+        along.add_product::<P>(axis, d[k]);
+    }
+    let mut high = low;
+    high.add(size * scale);
+    (low.to_double(), high.to_double(), along.to_double())
+}
+
+/// A point of a face in the box's own axes, without the coordinate across it.
+struct Along<'a> {
+    at: &'a Meeting,
+    axes: &'a [DVec3; 3],
+}
+
+impl Task for Along<'_> {
+    type Output = DVec3;
+    #[inline(always)]
+    fn run<P: Product>(self) -> DVec3 {
+        let [x, y, z] = self.at.local;
+        let dot = |v: DVec3| (x.scale::<P>(v.x) + y.scale::<P>(v.y) + z.scale::<P>(v.z)).to_f64();
+        DVec3::from_array(self.axes.map(dot)) * exp2i(self.at.power)
+    }
+}
+
 impl Primitive for Cuboid {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        None
+        let slabs = match &self.turn {
+            None => self.span(ray),
+            Some(turn) => self.span_turned(turn, ray),
+        };
+        match slabs.first(within) {
+            Ok(hit) => hit,
+            Err(()) => self.hit_exactly(ray, within),
+        }
     }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        let Some([near, far]) = self.span_exactly(ray) else { return };
+        if let Some(hit) = within.admit(near.t, near.face, 0) {
+            each(hit);
+        }
+        if let Some(hit) = within.admit(far.t, far.face, 1) {
+            each(hit);
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        Surface::new(hit.t(), p, p, DVec3::Y, 1e-12)
+        let (axes, size, corner) = (self.axes(), self.size(), self.corner());
+        let face = hit.part().min(5);
+        let (k, upper) = ((face / 2) as usize, face % 2 == 1);
+        let normal = if upper { axes[k] } else { -axes[k] };
+        // Along the world's axes the plane of a face goes through a coordinate given; turned, it lies `size` away.
+        let (anchor, offset) = match (&self.turn, upper) {
+            (_, false) => (corner, 0.0),
+            (None, true) => (corner.with_axis(k, self.max[k]), 0.0),
+            (Some(_), true) => (corner, size[k]),
+        };
+        let plane = ExactPlane { anchor, normal: flat::doubles(axes[k]), offset };
+        let Some(mut at) = flat::meet(&plane, ray, || flat::expansions(axes[k])) else {
+            // Only for a ray that this box gave no hit for.
+            return Surface::new(hit.t(), corner, DVec3::ZERO, normal, size.length());
+        };
+        if self.turn.is_none() {
+            at.local[k] = Double::ZERO;
+        }
+        let point = at.point(anchor);
+        let across = if upper { size[k] } else { 0.0 };
+        let local = if self.turn.is_none() { at.local().with_axis(k, across) } else { at.local() };
+        let object_point = match &self.turn {
+            None => local,
+            Some(turn) => run(Along { at: &at, axes: &turn.axes }).with_axis(k, across),
+        };
+        let object_point = object_point.clamp(DVec3::ZERO, size);
+        Surface::new(at.t, point, local, normal, at.error_radius(point))
+            .with_object_point(object_point)
+            .with_uv(face_uv(face, object_point, size))
     }
+
     fn bounds(&self) -> Option<Aabb> {
-        None
+        let Some(turn) = &self.turn else {
+            return Some(flat::outward(DVec3::ZERO, self.min, self.max));
+        };
+        let (mut least, mut most) = (DVec3::ZERO, DVec3::ZERO);
+        for (axis, size) in turn.axes.iter().zip(self.max.to_array()) {
+            let edge = *axis * size;
+            least += edge.min(DVec3::ZERO);
+            most += edge.max(DVec3::ZERO);
+        }
+        // The planes meet where the dual axes say: those of rounded unit axes differ by a few u from the axes
+        // themselves. Products and sums round by 3 u of the size.
+        let slack = DVec3::splat(16.0 * U * self.max.element_sum());
+        Some(flat::outward(turn.corner, least - slack, most + slack))
     }
+
+    /// A box is convex: a ray that leaves it outward never returns; one that goes inside leaves through one of
+    /// the other faces, for certain.
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        if from.side == Side::Outside || !ray.is_valid() {
+            return None;
+        }
+        let axes = self.axes();
+        let size = self.size();
+        let mut exit: Option<(f64, u32)> = None;
+        for k in 0..3 {
+            let (start, speed) = (axes[k].dot(from.local), axes[k].dot(ray.direction));
+            let face = 2 * k as u32 + (speed > 0.0) as u32;
+            if speed == 0.0 || face == from.part {
+                continue;
+            }
+            let way = if speed > 0.0 { size[k] - start } else { -start };
+            let t = way / speed;
+            if exit.is_none_or(|(least, _)| t < least) {
+                exit = Some((t, face));
+            }
+        }
+        let (t, face) = exit.unwrap_or((0.0, from.part));
+        // The start may lie beyond the exit by rounding: the exit is then where the ray starts.
+        let least = if within.min < 0.0 { 0.0 } else { f64::from_bits(1) };
+        let t = if t > 0.0 { t } else { least };
+        within.admit(t, face, 1)
+    }
+
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        if let Some(hit) = self.hit_leaving(ray, within, from) {
+            each(hit);
+        }
+    }
+}
+
+/// Texture coordinates on a face.
+fn face_uv(face: u32, p: DVec3, size: DVec3) -> DVec2 {
+    let part = |i: usize| if size[i] > 0.0 { p[i] / size[i] } else { 0.0 };
+    let (x, y, z) = (part(0), part(1), part(2));
+    match face {
+        0 => DVec2::new(z, y),
+        1 => DVec2::new(1.0 - z, y),
+        2 => DVec2::new(x, z),
+        3 => DVec2::new(x, 1.0 - z),
+        4 => DVec2::new(1.0 - x, y),
+        _ => DVec2::new(x, y),
+    }
+}
+
+/// A vector with one coordinate replaced.
+trait WithAxis {
+    fn with_axis(self, k: usize, value: f64) -> Self;
+}
+
+impl WithAxis for DVec3 {
+    fn with_axis(mut self, k: usize, value: f64) -> Self {
+        self[k] = value;
+        self
+    }
+}
+
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }

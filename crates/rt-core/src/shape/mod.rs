@@ -4,6 +4,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod disk;
+mod flat;
 mod frustum;
 mod plane;
 mod sphere;
