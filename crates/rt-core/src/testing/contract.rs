@@ -231,7 +231,8 @@ impl Check<'_> {
             let (a, b) = (shape.surface(ray, hit), shape.surface(ray, other));
             other.t() == t || (a.point - b.point).length() <= 4.0 * (a.error + b.error)
         };
-        if middle != t && !split.is_some_and(same) {
+        // So may a crossing at the very start of the ray.
+        if middle != t && !split.is_some_and(|other| same(other) || self.near_start(ray, other)) {
             return fail(
                 "a split interval has the same first hit",
                 parts[1],
