@@ -2,14 +2,17 @@
 
 use crate::failure::Failure;
 use crate::lines::{self, BadLine, write_number};
+use crate::scene_file::Loaded;
 use rt_core::glam::DVec3;
 use rt_core::{Interval, Primitive, Ray, Shape, Surface};
+use rt_shade::Scene;
 use rt_shade::text::shape::{self, Place, Value};
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::fmt;
+use std::ops::ControlFlow;
 
 /// One question. Keys that are not listed are passed over, so that a line may carry notes of its own.
 #[derive(Deserialize)]
@@ -35,6 +38,8 @@ fn unbounded() -> f64 {
 pub enum Target {
     /// Each line brings its own shape.
     Lines,
+    /// All rays meet this scene.
+    Scene(Box<Loaded>),
 }
 
 /// Reads questions from standard input and answers them on standard output.
@@ -65,9 +70,36 @@ fn answer(target: &Target, first: bool, line: &[u8], reply: &mut Vec<u8>) -> Res
             let advice = r#"missing `shape`: give one, as in "shape": {"sphere": {"center": [0, 0, 0], "radius": 1}}, or name a scene with --scene"#;
             return Err(BadLine::new(1, advice));
         }
+        (Target::Scene(_), Some(raw)) => {
+            return Err(BadLine::new(column(raw), "`shape` does not go with --scene: leave one of them out"));
+        }
+        (Target::Scene(loaded), None) => {
+            for (count, (name, surface)) in scene_hits(&loaded.scene, &ray, within, first).iter().enumerate()
+            {
+                write_hit(surface, Some(name), count, reply);
+            }
+        }
     }
     reply.extend_from_slice(b"]}");
     Ok(())
+}
+
+/// The crossings of all objects, ascending, or the nearest alone, each with its object's name.
+fn scene_hits<'a>(scene: &'a Scene, ray: &Ray, within: Interval, first: bool) -> Vec<(&'a str, Surface)> {
+    let geometry = scene.geometry();
+    let name = |object: u32| scene.objects().get(object as usize).map_or("", |o| o.name.as_str());
+    if first {
+        let nearest = geometry.nearest(ray, within);
+        return nearest.map(|f| (name(f.object), geometry.surface(ray, f))).into_iter().collect();
+    }
+    let mut found = Vec::new();
+    geometry.crossings(ray, within, None, &mut |crossing| {
+        found.push((crossing.object, geometry.surface(ray, crossing)));
+        ControlFlow::Continue(())
+    });
+    // Crossings of one object come in order and a stable sort keeps them so where two round to one t.
+    found.sort_by(|(a, x), (b, y)| x.t.total_cmp(&y.t).then(a.cmp(b)));
+    found.into_iter().map(|(object, surface)| (name(object), surface)).collect()
 }
 
 /// The full records of the crossings of a shape, or of the nearest alone.
@@ -81,7 +113,7 @@ fn each_surface(shape: &Shape, ray: &Ray, within: Interval, first: bool, each: &
     }
 }
 
-fn write_hit(surface: &Surface, object: Option<Cow<str>>, count: usize, reply: &mut Vec<u8>) {
+fn write_hit(surface: &Surface, object: Option<&str>, count: usize, reply: &mut Vec<u8>) {
     if count > 0 {
         reply.push(b',');
     }
@@ -94,7 +126,7 @@ fn write_hit(surface: &Surface, object: Option<Cow<str>>, count: usize, reply: &
     if let Some(name) = object {
         reply.extend_from_slice(b",\"object\":");
         // Writing to a vector does not fail.
-        let _ = serde_json::to_writer(&mut *reply, &name);
+        let _ = serde_json::to_writer(&mut *reply, name);
     }
     reply.push(b'}');
 }

@@ -46,7 +46,8 @@ impl Output {
     pub fn check(path: &Path) -> Result<Output, Failure> {
         if path.as_os_str() == "-" {
             if io::stdout().is_terminal() {
-                let advice = "standard output is a terminal: send it to a file or a program, or name a file with -o";
+                let advice =
+                    "standard output is a terminal: send it to a file or a program, or name a file with -o";
                 return Err(Failure::Usage(advice.into()));
             }
             return Ok(Output::Stdout);
@@ -69,11 +70,6 @@ impl Output {
         // The folder must take a new file; this one goes away at once.
         temporary_beside(&target).map_err(failed)?;
         Ok(Output::File { shown: path.into(), path: target })
-    }
-
-    /// Whether this is standard output.
-    pub fn is_stdout(&self) -> bool {
-        matches!(self, Output::Stdout)
     }
 
     /// The file that will be replaced, if there is one.
@@ -108,8 +104,7 @@ impl Output {
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut temporary = temporary_beside(path)?;
     set_unfinished(Some(temporary.path().to_path_buf()));
-    temporary.write_all(bytes)?;
-    temporary.flush()?;
+    temporary.write_all(bytes).and_then(|()| temporary.flush()).map_err(plain)?;
     if let Ok(old) = fs::metadata(path) {
         temporary.as_file().set_permissions(old.permissions())?;
     }
@@ -137,7 +132,16 @@ fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder_of(path))
+    builder.tempfile_in(folder_of(path)).map_err(plain)
+}
+
+/// The system's own error: the temporary file's name, which the wrapped one adds, tells nobody anything.
+fn plain(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|e| e.source()).and_then(|e| e.downcast_ref::<io::Error>());
+    match inner.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
+    }
 }
 
 /// Makes the rename itself last. Not every file system can: then the data are safe and the name follows when it may.

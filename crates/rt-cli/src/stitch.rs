@@ -18,9 +18,13 @@ pub fn run(parts: &[PathBuf], output: &Path) -> Result<(), Failure> {
         let bytes = fs::read(path).map_err(Failure::file("read", path))?;
         if Format::of(path)? != format {
             let advice = "stitch parts to a file of their own kind, PNG to PNG and PFM to PFM";
-            return Err(Failure::Usage(format!("{}: not of the kind of {}: {advice}", path.display(), output.display())));
+            return Err(Failure::Usage(format!(
+                "{}: not of the kind of {}: {advice}",
+                path.display(),
+                output.display()
+            )));
         }
-        let Some(place) = Place::find(&bytes) else {
+        let Some((place, _)) = Place::find(&bytes) else {
             return Err(wrong(path, "not a part of a picture: parts are rendered with --tile K/N"));
         };
         found.push((place, path));
@@ -33,11 +37,15 @@ pub fn run(parts: &[PathBuf], output: &Path) -> Result<(), Failure> {
     let columns = width as usize;
     for (place, path) in &found {
         let bytes = fs::read(path).map_err(Failure::file("read", *path))?;
-        let part = Picture::decode(&bytes).map_err(|error| wrong(path, &error.to_string()))?;
+        let (_, picture) = Place::find(&bytes).unwrap_or((*place, &bytes));
+        let part = Picture::decode(picture).map_err(|error| wrong(path, &error.to_string()))?;
         let (first, end) = place.part.rows(height);
         if (part.width(), part.height()) != (width, end - first) {
             let (w, h) = (part.width(), part.height());
-            return Err(wrong(path, &format!("{w} x {h} pixels, but its place says {width} x {}", end - first)));
+            return Err(wrong(
+                path,
+                &format!("{w} x {h} pixels, but its place says {width} x {}", end - first),
+            ));
         }
         whole.pixels_mut()[first as usize * columns..end as usize * columns].copy_from_slice(part.pixels());
     }
@@ -54,7 +62,8 @@ fn check(found: &mut [(Place, &Path)]) -> Result<(), Failure> {
     for (place, path) in found.iter() {
         let same = |p: &Place| (p.part.of, p.width, p.height, p.picture);
         if same(place) != same(&first) {
-            let message = format!("part of another picture than {}: {place}, not {first}", first_path.display());
+            let message =
+                format!("part of another picture than {}: {place}, not {first}", first_path.display());
             return Err(wrong(path, &message));
         }
         if !place.finished {
@@ -65,7 +74,10 @@ fn check(found: &mut [(Place, &Path)]) -> Result<(), Failure> {
     for pair in found.windows(2) {
         let [(a, a_path), (b, b_path)] = pair else { continue };
         if a.part == b.part {
-            return Err(wrong(b_path, &format!("part {} is there twice, also as {}", b.part, a_path.display())));
+            return Err(wrong(
+                b_path,
+                &format!("part {} is there twice, also as {}", b.part, a_path.display()),
+            ));
         }
     }
     let present: Vec<u32> = found.iter().map(|(place, _)| place.part.number).collect();

@@ -127,3 +127,72 @@ pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Opti
     let t = if t > 0.0 { t } else { 0.0 };
     within.admit(if t > within.min { t } else { within.min.next_up() }, part, root)
 }
+
+/// The error radius of a point that was rounded once from double-double.
+///
+/// The rounding errs by at most u = 2^-53 of each coordinate, hence u `|point|` in all (and 2^-1074 where that
+/// is subnormal). The place on the ray errs, in units of `size`, by the error of the discriminant, at most
+/// 2^-99, over twice its root `half`; where the discriminant itself is below its error, by the root of that.
+#[inline]
+pub(crate) fn error_radius(point: DVec3, size: f64, half: f64) -> f64 {
+    let big = largest(point);
+    // sqrt(3) < 1.75, and an ulp of slack.
+    let rounding = big * (1.75 * exp2i(-53)) + f64::from_bits(4);
+    let along = exp2i(-100) / half;
+    let along = if along < exp2i(-49) { along } else { exp2i(-49) };
+    rounding + size * along
+}
+
+/// The discriminant must exceed this many times the bound of its error before a crossing found in `f64` is taken.
+///
+/// Any number well above 1 makes the decision certain. A parameter is then wrong by at most 2^-21 of half the chord,
+/// so that the margins below are small and seldom matter; and of rays aimed from ten sizes away one in 2^26 is left
+/// to double-double arithmetic.
+pub(crate) const CLEAR: f64 = exp2i(20);
+
+/// A crossing found in `f64`: its parameter is wrong by less than `margin`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    pub t: f64,
+    pub margin: f64,
+    pub part: u32,
+    pub root: u32,
+}
+
+impl Candidate {
+    /// The hit, or `None`, where that is certain; otherwise `exact` decides.
+    #[inline(always)]
+    pub fn decide(&self, within: Interval, exact: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
+        let Candidate { t, margin, .. } = *self;
+        if t - within.min > margin && within.max - t > margin {
+            within.admit(t, self.part, self.root)
+        } else if within.min - t > margin || t - within.max > margin {
+            None
+        } else {
+            exact()
+        }
+    }
+
+    /// The same crossing in a unit of the parameter that is `2^-power` times as large.
+    pub fn unscale(self, power: i32) -> Candidate {
+        Candidate { t: times_power(self.t, power), margin: times_power(self.margin, power), ..self }
+    }
+}
+
+/// What `f64` arithmetic can say about a line and a convex shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Rough {
+    /// No crossing, certainly.
+    Miss,
+    /// These two crossings, certainly.
+    Span([Candidate; 2]),
+    /// It takes more digits to tell.
+    Doubt,
+}
+
+/// Whether squares and products of a few numbers of this size stay exact enough: far from under- and overflow.
+/// False for NaN.
+#[inline(always)]
+pub(crate) fn moderate(x: f64) -> bool {
+    x > exp2i(-400) && x < exp2i(400)
+}

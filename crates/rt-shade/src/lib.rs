@@ -7,6 +7,7 @@
 
 pub use rt_core;
 
+mod adaptive;
 mod camera;
 mod color;
 mod error;
@@ -20,6 +21,8 @@ mod render;
 mod sample;
 mod scene;
 mod settings;
+#[cfg(feature = "image")]
+mod srgb;
 #[cfg(feature = "text")]
 pub mod text;
 mod texture;

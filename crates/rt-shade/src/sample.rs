@@ -1,1 +1,37 @@
-//! Anti-aliasing.
+//! Where in a pixel the rays go: one, a grid, or the corners of the raster.
+
+use crate::whitted::Tracer;
+use crate::{Antialias, Camera, Color, Region, Settings};
+
+/// The colours of the pixels of `tile`, row by row.
+pub(crate) fn tile(
+    tracer: &mut Tracer,
+    camera: &Camera,
+    settings: &Settings,
+    tile: Region,
+    out: &mut Vec<[f32; 3]>,
+) {
+    let (width, height) = (settings.width, settings.height);
+    let n = match settings.antialias {
+        Antialias::Grid(n) => n,
+        _ => 1,
+    };
+    let share = 1.0 / f64::from(n * n);
+    // Centres of n x n equal squares; the corner itself when corners are asked for.
+    let step = 1.0 / f64::from(n);
+    let first = if settings.corners { 0.0 } else { 0.5 * step };
+    out.clear();
+    for y in tile.y..tile.y + tile.height {
+        for x in tile.x..tile.x + tile.width {
+            let mut sum = Color::BLACK;
+            for j in 0..n {
+                for i in 0..n {
+                    let u = f64::from(x) + (first + f64::from(i) * step);
+                    let v = f64::from(y) + (first + f64::from(j) * step);
+                    sum += tracer.eye(&camera.ray(u, v, width, height));
+                }
+            }
+            out.push((sum * share).to_f32());
+        }
+    }
+}

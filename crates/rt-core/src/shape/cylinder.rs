@@ -80,19 +80,11 @@ impl Cylinder {
 impl Primitive for Cylinder {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let mut first = None;
-        self.frustum.exact(ray, within, |hit| {
-            first = Some(hit);
-            true
-        });
-        first
+        self.frustum.hit::<false>(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        self.frustum.exact(ray, within, |hit| {
-            each(hit);
-            false
-        });
+        self.frustum.crossings::<false>(ray, within, each)
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {

@@ -9,7 +9,10 @@ use crate::double_vector::DoubleVector;
 use crate::frame::turns;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
-use crate::scaled::{ScaledRay, admit, admit_exit, checked_length, checked_point, largest};
+use crate::scaled::{
+    CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
+    largest, moderate,
+};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use glam::{DVec2, DVec3};
 
@@ -62,11 +65,80 @@ impl Sphere {
         Some((scaled, chord))
     }
 
-    /// Both crossings in double-double.
-    fn exact(&self, ray: &Ray) -> Option<[Double; 2]> {
-        let (scaled, chord) = self.scaled(ray)?;
-        if chord.depth.high > 0.0 { Some(chord.at.map(|s| scaled.unscale(chord.shift + s))) } else { None }
+    /// Entrance and exit as `f64` finds them, in the units of the given ray.
+    #[inline(always)]
+    fn rough(&self, ray: &Ray) -> Rough {
+        match rough(self.radius, ray.origin - self.center, ray.direction) {
+            Rough::Doubt => self.rescaled(ray),
+            clear => clear,
+        }
     }
+
+    /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
+    /// finds what `f64` without limits would have found.
+    #[cold]
+    fn rescaled(&self, ray: &Ray) -> Rough {
+        let unit = exponent(self.radius);
+        let Some(scaled) = ScaledRay::new(ray, self.center, unit) else { return Rough::Miss };
+        match rough(self.radius * exp2i(-unit), scaled.relative.high(), scaled.direction) {
+            Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
+            other => other,
+        }
+    }
+
+    /// The crossing of this root in double-double.
+    #[cold]
+    fn exact(&self, ray: &Ray, within: Interval, root: u32) -> Option<Hit> {
+        let (scaled, chord) = self.scaled(ray)?;
+        if !(chord.depth.high > 0.0) {
+            return None;
+        }
+        admit(within, scaled.unscale(chord.shift + chord.at[(root & 1) as usize]), 0, root)
+    }
+
+    /// The crossing of this root, if it lies in the interval.
+    #[inline(always)]
+    fn crossing(&self, rough: &Rough, ray: &Ray, within: Interval, root: u32) -> Option<Hit> {
+        match rough {
+            Rough::Miss => None,
+            Rough::Doubt => self.exact(ray, within, root),
+            Rough::Span(span) => span[(root & 1) as usize].decide(within, || self.exact(ray, within, root)),
+        }
+    }
+}
+
+/// A line and a sphere about zero in `f64`: certain, or in doubt.
+///
+/// With `t0 = -w.d / |d|^2` the closest approach `m = w + t0 d` is computed with an error below 2 u |w| + u |m| off the
+/// line (u = 2^-53) and below 9 u |w| along it. Hence `r^2 - |m|^2` errs by less than
+/// `4 u |m| |w| + 6 u |m|^2 + 2 u r^2 + 121 u^2 |w|^2`, and wherever its sign could be in doubt, |m| is at most about r
+/// or 6 u |w|: less than `8 u S r + 128 u^2 S^2` for S = |w| + 2 r, the sum of the sizes of the coordinates for |w|.
+/// Where it is more than `CLEAR` = 2^20 times that, the parameters err by less than 2^-21 of half the chord from the
+/// root, and `9 u |w| / |d|` is less still: 2^-19 of half the chord is a margin.
+#[inline(always)]
+fn rough(radius: f64, w: DVec3, d: DVec3) -> Rough {
+    let square = d.dot(d);
+    let inverse = 1.0 / square;
+    let t0 = -(w.dot(d) * inverse);
+    let m = w + d * t0;
+    let depth = radius * radius - m.dot(m);
+    let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
+    if !(moderate(square) && moderate(far)) {
+        return Rough::Doubt;
+    }
+    let doubt = far * (radius * exp2i(-50) + far * exp2i(-99));
+    if depth < -doubt {
+        return Rough::Miss;
+    }
+    if !(depth > CLEAR * doubt) {
+        return Rough::Doubt;
+    }
+    let half = sqrt(depth * inverse);
+    let margin = half * exp2i(-19);
+    Rough::Span([
+        Candidate { t: t0 - half, margin, part: 0, root: 0 },
+        Candidate { t: t0 + half, margin, part: 0, root: 1 },
+    ])
 }
 
 /// A line and a sphere about zero in double-double: `start + (t - shift) * direction`.
@@ -146,14 +218,14 @@ impl Task for FindSurface<'_> {
 impl Primitive for Sphere {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let [enter, leave] = self.exact(ray)?;
-        admit(within, enter, 0, 0).or_else(|| admit(within, leave, 0, 1))
+        let rough = self.rough(ray);
+        self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        let Some(at) = self.exact(ray) else { return };
-        for (root, t) in at.into_iter().enumerate() {
-            if let Some(hit) = admit(within, t, 0, root as u32) {
+        let rough = self.rough(ray);
+        for root in 0..2 {
+            if let Some(hit) = self.crossing(&rough, ray, within, root) {
                 each(hit);
             }
         }
@@ -209,18 +281,4 @@ fn down(x: f64) -> f64 {
 /// Two numbers up.
 fn up(x: f64) -> f64 {
     x.next_up().next_up()
-}
-
-/// The error radius of a point that was rounded once from double-double.
-///
-/// The rounding errs by at most u = 2^-53 of each coordinate, hence u `|point|` in all (and 2^-1074 where that
-/// is subnormal). The place on the ray errs, in units of `size`, by the error of the discriminant, at most
-/// 2^-99, over twice its root `half`; where the discriminant itself is below its error, by the root of that.
-pub(super) fn error_radius(point: DVec3, size: f64, half: f64) -> f64 {
-    let big = largest(point);
-    // sqrt(3) < 1.75, and an ulp of slack.
-    let rounding = big * (1.75 * exp2i(-53)) + f64::from_bits(4);
-    let along = exp2i(-100) / half;
-    let along = if along < exp2i(-49) { along } else { exp2i(-49) };
-    rounding + size * along
 }

@@ -54,9 +54,17 @@ pub struct Diagnostics {
 impl Diagnostics {
     /// An error about the file as a whole, placed at its very beginning.
     pub fn of_file(file: &str, message: impl Into<String>) -> Diagnostics {
-        let mut report = Report::new(file, "");
-        report.error(0..0, message);
-        report.finish(()).err().unwrap_or(Diagnostics { errors: Vec::new(), more: 0 })
+        Diagnostics::at(file, b"", 0, message)
+    }
+
+    /// An error at one byte of a file that need not be text.
+    pub(crate) fn at(file: &str, bytes: &[u8], at: usize, message: impl Into<String>) -> Diagnostics {
+        let mut report = Report { file, text: bytes, found: Vec::new(), more: 0 };
+        report.error(at..at + 1, message);
+        match report.finish_failed::<std::convert::Infallible>() {
+            Err(diagnostics) => diagnostics,
+            Ok(never) => match never {},
+        }
     }
 
     /// How many errors were found, those that were not kept included.
@@ -102,7 +110,7 @@ impl std::error::Error for Diagnostics {}
 /// Collects the errors of one text while it is read.
 pub(crate) struct Report<'a> {
     file: &'a str,
-    text: &'a str,
+    text: &'a [u8],
     /// Sorted by place, at most `MOST_ERRORS`.
     found: Vec<(Range<usize>, String)>,
     more: usize,
@@ -110,7 +118,7 @@ pub(crate) struct Report<'a> {
 
 impl<'a> Report<'a> {
     pub(crate) fn new(file: &'a str, text: &'a str) -> Report<'a> {
-        Report { file, text, found: Vec::new(), more: 0 }
+        Report { file, text: text.as_bytes(), found: Vec::new(), more: 0 }
     }
 
     /// Notes an error about these bytes of the text.
@@ -131,17 +139,30 @@ impl<'a> Report<'a> {
         self.found.is_empty()
     }
 
-    /// The value, or the errors if there were any.
-    pub(crate) fn finish<T>(self, value: T) -> Result<T, Diagnostics> {
+    /// Whether a further error at the end of the file would only be counted.
+    pub(crate) fn is_full(&self) -> bool {
+        self.found.len() >= MOST_ERRORS
+    }
+
+    /// The errors, of which there is at least one.
+    pub(crate) fn finish_failed<T>(mut self) -> Result<T, Diagnostics> {
         if self.is_clean() {
-            return Ok(value);
+            self.error(0..0, "the file cannot be read as a scene");
         }
         let errors = self.found.iter().map(|(span, message)| self.diagnostic(span, message)).collect();
         Err(Diagnostics { errors, more: self.more })
     }
 
+    /// The value, or the errors if there were any.
+    pub(crate) fn finish<T>(self, value: T) -> Result<T, Diagnostics> {
+        if self.is_clean() {
+            return Ok(value);
+        }
+        self.finish_failed()
+    }
+
     fn diagnostic(&self, span: &Range<usize>, message: &str) -> Diagnostic {
-        let bytes = self.text.as_bytes();
+        let bytes = self.text;
         let start = span.start.min(bytes.len());
         let begin = bytes[..start].iter().rposition(|&b| b == b'\n').map_or(0, |at| at + 1);
         let line = 1 + bytes[..begin].iter().filter(|&&b| b == b'\n').count();

@@ -4,6 +4,7 @@
 //! rest of the errors.
 
 use super::diagnostic::Report;
+use super::shape::Value;
 use super::suggest;
 use rt_core::glam::DVec3;
 use std::ops::Range;
@@ -44,6 +45,11 @@ pub(crate) fn kind_of(value: &DeValue<'_>) -> &'static str {
 }
 
 impl<'t> Node<'t> {
+    /// The entries of a table of any content.
+    pub(crate) fn of_table(table: &'t DeTable<'t>) -> impl Iterator<Item = Node<'t>> + use<'t> {
+        table.iter().map(|(key, value)| Node { key, value })
+    }
+
     pub(crate) fn name(&self) -> &'t str {
         self.key.get_ref()
     }
@@ -54,6 +60,25 @@ impl<'t> Node<'t> {
 
     pub(crate) fn value(&self) -> &'t DeValue<'t> {
         self.value.get_ref()
+    }
+
+    /// The place of one value of a list.
+    pub(crate) fn element(&self, index: usize) -> Range<usize> {
+        self.value().as_array().and_then(|list| list.get(index)).map_or(self.place(), |value| value.span())
+    }
+
+    /// The string, for messages.
+    pub(crate) fn text_or_empty(&self) -> &'t str {
+        self.value().as_str().unwrap_or_default()
+    }
+
+    /// The value of a shape's field, whatever its type; `None` after reporting a bad number.
+    pub(crate) fn shape_value(&self, report: &mut Report) -> Option<Value> {
+        match self.value() {
+            DeValue::Integer(_) | DeValue::Float(_) => self.number(report).map(Value::Number),
+            DeValue::Array(list) if list.len() == 3 => self.vector(report).map(Value::Vector),
+            other => Some(Value::Other(kind_of(other))),
+        }
     }
 
     fn wrong_type(&self, expected: &str, report: &mut Report) {
@@ -129,6 +154,23 @@ impl<'t> Node<'t> {
         value
     }
 
+    /// The values of a list of this length.
+    pub(crate) fn items(
+        &self,
+        expected: &str,
+        length: usize,
+        report: &mut Report,
+    ) -> Option<impl Iterator<Item = Node<'t>> + use<'t>> {
+        let key = self.key;
+        match self.value().as_array() {
+            Some(list) if list.len() == length => Some(list.iter().map(move |value| Node { key, value })),
+            _ => {
+                self.wrong_type(expected, report);
+                None
+            }
+        }
+    }
+
     /// The entries of a list of tables, `[[name]]`.
     pub(crate) fn list(&self, report: &mut Report) -> Option<impl Iterator<Item = Node<'t>> + use<'t>> {
         let key = self.key;
@@ -150,7 +192,7 @@ impl<'t> Node<'t> {
                 format!("`{name}` must be a table of named tables, not {found}: write [{name}.NAME]");
             report.error(self.key.span(), message);
         }
-        Some(table?.iter().map(|(key, value)| Node { key, value }))
+        Some(Node::of_table(table?))
     }
 
     /// A table; `what` says in messages which. Keys that are neither required nor optional are reported, as are
@@ -191,7 +233,11 @@ impl<'t> Table<'t> {
     }
 
     pub(crate) fn entries(&self) -> impl Iterator<Item = Node<'t>> + use<'t> {
-        self.fields.iter().map(|(key, value)| Node { key, value })
+        Node::of_table(self.fields)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.fields.is_empty()
     }
 
     fn check(&self, what: &str, required: &[&'static str], optional: &[&'static str], report: &mut Report) {

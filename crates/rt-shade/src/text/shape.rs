@@ -101,7 +101,7 @@ impl Fields {
 
 use Type::{Number, Vector};
 
-const KINDS: [Kind; 10] = [
+static KINDS: [Kind; 10] = [
     Kind {
         word: "sphere",
         fields: &[("center", Vector), ("radius", Number)],
@@ -172,7 +172,9 @@ const KINDS: [Kind; 10] = [
 ];
 
 fn triangle(f: &Fields) -> Result<Shape, Error> {
-    Ok(Triangle::new(f.vector(0), f.vector(1), f.vector(2))?.into())
+    let flat = Triangle::new(f.vector(0), f.vector(1), f.vector(2))?;
+    let smooth = f.0[3].is_some();
+    Ok(if smooth { flat.with_normals(f.vector(3), f.vector(4), f.vector(5))? } else { flat }.into())
 }
 
 /// The words for the kinds of shape.
@@ -198,6 +200,22 @@ pub fn kinds() -> impl Iterator<Item = &'static str> + Clone {
 /// All that is wrong: an unknown kind or key, a missing field, a value of the wrong type, or what the shape's own
 /// constructor refuses.
 pub fn from_fields(kind: &str, fields: &[(&str, Value)]) -> Result<Shape, Vec<Problem>> {
+    make(&check(kind, fields)?, fields).map_err(|problem| vec![problem])
+}
+
+/// Fields that fit their kind of shape.
+pub(super) struct Checked {
+    kind: &'static Kind,
+    values: Fields,
+}
+
+/// Makes the shape of checked fields; the constructor may still refuse their values.
+pub(super) fn make(checked: &Checked, fields: &[(&str, Value)]) -> Result<Shape, Problem> {
+    (checked.kind.make)(&checked.values).map_err(|error| explain(checked.kind.word, fields, &error))
+}
+
+/// Checks the kind, the keys and the types of the values.
+pub(super) fn check(kind: &str, fields: &[(&str, Value)]) -> Result<Checked, Vec<Problem>> {
     let Some(kind) = KINDS.iter().find(|k| k.word == kind) else {
         let message = format!("unknown shape `{kind}`: {}", suggest::advice(kind, kinds(), ""));
         return Err(vec![Problem { place: Place::Kind, message }]);
@@ -242,10 +260,7 @@ pub fn from_fields(kind: &str, fields: &[(&str, Value)]) -> Result<Shape, Vec<Pr
         let message = format!("{} lacks `{}`", kind.word, missing.join("`, `"));
         problems.push(Problem { place: Place::Table, message });
     }
-    if !problems.is_empty() {
-        return Err(problems);
-    }
-    (kind.make)(&values).map_err(|error| vec![explain(kind.word, fields, &error)])
+    if problems.is_empty() { Ok(Checked { kind, values }) } else { Err(problems) }
 }
 
 /// The constructor's complaint at the field that carries the offending value.
