@@ -1,8 +1,31 @@
 //! Many shapes: the nearest hit, or whether anything is in the way.
+//!
+//! A [`Geometry`] finds exactly what a loop over all its shapes would find, to the last bit, whatever the
+//! instruction set: boxes rounded outward only leave out shapes that the ray cannot hit, and each hit is computed by
+//! the shape itself.
+//!
+//! # Order of hits
+//! The hit with the least parameter is the nearest. Where the parameters of two objects are so close that their
+//! roundings could have exchanged them, the order is that of their refined parameters ([`Surface::t`]); at equal ones,
+//! leaving a solid comes before entering one (`direction . normal > 0` first), then the order of adding.
 
-use crate::{Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
+mod builder;
+mod frame;
+mod query;
+mod store;
+mod traverse;
+mod tree;
+
+use crate::kernel::vectorize;
+use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
+use builder::Item;
 use core::ops::ControlFlow;
+use frame::{Frame, LocalRay};
+use query::{Any, Contest, Crossings, Nearest, Query, Ruling};
+use store::{Run, Store};
+use traverse::Descent;
+use tree::{Child, Tree};
 
 /// A hit and the object it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,12 +40,19 @@ pub struct Found {
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     shapes: Vec<Shape>,
+    frame: Frame,
+    tree: Tree,
+    store: Store,
+    /// The shapes outside the tree.
+    apart: Vec<Run>,
+    plain: bool,
 }
 
 /// Collects shapes for a [`Geometry`].
 #[derive(Clone, Debug, Default)]
 pub struct GeometryBuilder {
     shapes: Vec<Shape>,
+    plain: bool,
 }
 
 impl GeometryBuilder {
@@ -39,9 +69,25 @@ impl GeometryBuilder {
         (self.shapes.len() - 1) as u32
     }
 
+    /// Whether to build an acceleration structure (the default), or to test every shape with every ray. The answers
+    /// are the same bits: the plain loop is for tests and comparisons.
+    pub fn accelerated(mut self, accelerated: bool) -> Self {
+        self.plain = !accelerated;
+        self
+    }
+
     /// Prepares the set for rays.
     pub fn build(self) -> Geometry {
-        Geometry { shapes: self.shapes }
+        let GeometryBuilder { shapes, plain } = self;
+        let bounds: Vec<Option<Aabb>> =
+            shapes.iter().map(|shape| shape.bounds().filter(frame::is_regular)).collect();
+        let regular: Vec<Aabb> = bounds.iter().flatten().copied().collect();
+        let frame = Frame::around(&regular);
+        let mut geometry = Geometry { shapes, frame, plain, ..Geometry::default() };
+        if !plain {
+            geometry.accelerate(&bounds);
+        }
+        geometry
     }
 }
 
@@ -56,37 +102,112 @@ impl Geometry {
         &self.shapes
     }
 
-    /// The nearest hit inside the interval; equal ones are ordered by index.
+    /// The bytes of memory in use beside [`shapes`](Geometry::shapes).
+    pub fn memory(&self) -> usize {
+        self.tree.bytes() + self.store.bytes()
+    }
+
+    fn accelerate(&mut self, bounds: &[Option<Aabb>]) {
+        let mut items = Vec::with_capacity(bounds.len());
+        let mut apart: [Vec<u32>; Store::KINDS] = Default::default();
+        let mut counts = [0; Store::KINDS];
+        for (object, (shape, bounds)) in self.shapes.iter().zip(bounds).enumerate() {
+            let (object, kind) = (object as u32, Store::kind_of(shape));
+            counts[kind as usize] += 1;
+            match bounds {
+                Some(bounds) if items.len() < Child::CAPACITY => {
+                    let (min, max) = self.frame.outward(bounds);
+                    items.push(Item { min, object, max, kind });
+                }
+                _ => apart[kind as usize].push(object),
+            }
+        }
+        self.tree = builder::build(&mut items);
+        self.store.reserve(counts);
+        for item in items {
+            self.store.push(&self.shapes[item.object as usize], item.object);
+        }
+        // Those apart come last of their kind.
+        for (kind, objects) in apart.iter().enumerate().filter(|(_, objects)| !objects.is_empty()) {
+            let first = self.store.count(kind as u32);
+            self.apart.push(Run { kind: kind as u32, first, count: objects.len() });
+            for &object in objects {
+                self.store.push(&self.shapes[object as usize], object);
+            }
+        }
+    }
+
+    /// The nearest hit inside the interval: see the [order of hits](self#order-of-hits).
     pub fn nearest(&self, ray: &Ray, within: Interval) -> Option<Found> {
-        self.nearest_by(within, |_, s, within| s.hit(ray, within))
+        self.nearest_from(ray, within, None)
     }
 
     /// The nearest hit of a ray that leaves a surface: see [`Departure`].
     pub fn nearest_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Found> {
-        self.nearest_by(within, |id, s, within| {
-            if id == from.object { s.hit_leaving(ray, within, from) } else { s.hit(ray, within) }
-        })
+        self.nearest_from(ray, within, Some(from))
     }
 
-    fn nearest_by(
-        &self,
-        within: Interval,
-        test: impl Fn(u32, &Shape, Interval) -> Option<Hit>,
-    ) -> Option<Found> {
-        let mut best: Option<Found> = None;
-        let mut rest = within;
-        for (id, shape) in self.shapes.iter().enumerate() {
-            if let Some(hit) = test(id as u32, shape, rest) {
-                best = Some(Found { object: id as u32, hit });
-                rest = rest.until(hit.t());
-            }
+    #[inline(always)]
+    fn nearest_from(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
+        if !is_legal(ray, within) {
+            return None;
         }
-        best
+        let (local, window) = self.frame.enter(ray, within);
+        let mut nearest = Nearest::new(within, window, from.map(|from| from.object));
+        if let Some((from, shape)) = self.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            nearest.offer(from.object, hit);
+        }
+        let _ = self.ask(ray, local, &mut nearest);
+        match nearest.ruling() {
+            Ruling::Clear(found) => found,
+            Ruling::Contested(within) => self.decide(ray, within, local, from),
+        }
+    }
+
+    /// The first of the hits within an interval in which several objects are hit, too close to be sure.
+    #[cold]
+    fn decide(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        local: Option<LocalRay>,
+        from: Option<&Departure>,
+    ) -> Option<Found> {
+        let mut contest = Contest::new(within, from.map(|from| from.object));
+        if let Some((from, shape)) = self.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            contest.offer(ray, from.object, shape, hit);
+        }
+        let _ = self.ask(ray, local, &mut contest);
+        contest.winner()
     }
 
     /// Whether anything lies inside the interval.
     pub fn occluded(&self, ray: &Ray, within: Interval) -> bool {
-        self.shapes.iter().any(|s| s.hit(ray, within).is_some())
+        self.occluded_from(ray, within, None)
+    }
+
+    /// Whether anything lies inside the interval, for a ray that leaves a surface: see [`Departure`].
+    pub fn occluded_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> bool {
+        self.occluded_from(ray, within, Some(from))
+    }
+
+    #[inline(always)]
+    fn occluded_from(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> bool {
+        if !is_legal(ray, within) {
+            return false;
+        }
+        if let Some((from, shape)) = self.departed(from)
+            && shape.hit_leaving(ray, within, from).is_some()
+        {
+            return true;
+        }
+        let mut any = Any::new(within, from.map(|from| from.object));
+        let _ = self.ask(ray, self.frame.enter(ray, within).0, &mut any);
+        any.found
     }
 
     /// All crossings inside the interval of all objects, in no particular order, but ascending for each object;
@@ -98,28 +219,51 @@ impl Geometry {
         from: Option<&Departure>,
         each: &mut dyn FnMut(Found) -> ControlFlow<()>,
     ) {
-        for (id, shape) in self.shapes.iter().enumerate() {
-            let object = id as u32;
-            let mut flow = ControlFlow::Continue(());
-            let mut report = |hit| {
-                if flow.is_continue() {
-                    flow = each(Found { object, hit });
-                }
-            };
-            match from {
-                Some(from) if from.object == object => {
-                    shape.crossings_leaving(ray, within, from, &mut report)
-                }
-                _ => shape.crossings(ray, within, &mut report),
-            }
+        if !is_legal(ray, within) {
+            return;
+        }
+        if let Some((from, shape)) = self.departed(from) {
+            let flow =
+                query::report(from.object, each, |each| shape.crossings_leaving(ray, within, from, each));
             if flow.is_break() {
                 return;
             }
         }
+        let _ = self.ask(ray, self.frame.enter(ray, within).0, &mut Crossings { within, from, each });
     }
 
     /// The full record of a hit found with this ray.
     pub fn surface(&self, ray: &Ray, found: Found) -> Surface {
         self.shapes[found.object as usize].surface(ray, found.hit)
     }
+
+    /// The shape that the ray leaves, if it is one of these.
+    #[inline(always)]
+    fn departed<'a>(&self, from: Option<&'a Departure>) -> Option<(&'a Departure, &Shape)> {
+        from.and_then(|from| self.shapes.get(from.object as usize).map(|shape| (from, shape)))
+    }
+
+    /// Shows the query every shape that the ray can hit, until it breaks.
+    #[inline(always)]
+    fn ask<Q: Query>(&self, ray: &Ray, local: Option<LocalRay>, query: &mut Q) -> ControlFlow<()> {
+        if self.plain {
+            for (object, shape) in self.shapes.iter().enumerate() {
+                query.visit(ray, object as u32, shape)?;
+            }
+            return ControlFlow::Continue(());
+        }
+        for run in &self.apart {
+            self.store.visit(*run, ray, query)?;
+        }
+        match local {
+            Some(local) => vectorize(Descent { tree: &self.tree, store: &self.store, ray, local, query }),
+            None => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Whether the ray can hit anything in the interval.
+#[inline(always)]
+fn is_legal(ray: &Ray, within: Interval) -> bool {
+    ray.is_valid() && within.min < within.max
 }

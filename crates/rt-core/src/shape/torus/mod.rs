@@ -1,18 +1,23 @@
 //! The torus: all points at distance `minor` from a circle of radius `major`.
 
-mod approach;
+mod exact;
+mod extrema;
+mod filter;
 mod frame;
-mod isolate;
+mod line;
 mod record;
 
 use crate::double::Double;
+use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
-use crate::math::{exp2i, exponent};
+use crate::math::{exp2i, exponent, sqrt};
+use crate::scaled::{ScaledRay, admit, checked_length, checked_point, largest};
 use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use approach::{Approach, Vector};
+use filter::{Filter, Verdict};
 use frame::Frame;
 use glam::DVec3;
-use isolate::Quartic;
+use line::Line;
+use record::{Near, Thorough};
 
 /// A torus of any tilt: a ring (`minor < major`), a horn (equal) or a spindle (`minor > major`, all of whose sheets
 /// are hit).
@@ -31,14 +36,20 @@ pub struct Torus {
     center: DVec3,
     major: f64,
     minor: f64,
-    frame: [Vector; 3],
-    /// The power of two of the larger radius; `unit` is two to its negative.
+    /// The own axes.
+    frame: [DoubleVector; 3],
+    /// The third of them, rounded.
+    axis: DVec3,
+    /// The power of two of the larger radius: what follows is in units of two to it.
     scale: i32,
-    unit: f64,
     major_scaled: f64,
     minor_scaled: f64,
-    /// `R^2 + r^2` at the torus' scale.
+    /// `R + r`.
+    reach: f64,
+    /// `R^2 + r^2`.
     squares: Double,
+    /// `2 R^2`.
+    twice: Double,
 }
 
 impl Torus {
@@ -64,23 +75,26 @@ impl Torus {
         Torus::framed(center.into(), kernel::run(Frame { axis, hint: None }), major, minor)
     }
 
-    fn framed(center: DVec3, frame: [Vector; 3], major: f64, minor: f64) -> Result<Self, Error> {
-        if !center.is_finite() {
-            return Err(Error::NotFinite { what: "torus center", value: center });
-        }
-        for (what, value) in [("torus major radius", major), ("torus minor radius", minor)] {
-            if !(value > 0.0 && value < f64::INFINITY) {
-                return Err(Error::NotPositive { what, value });
-            }
-            if !(exp2i(-540)..exp2i(540)).contains(&value) {
-                return Err(Error::OutOfRange { what, value });
-            }
-        }
-        let scale = exponent(major.max(minor));
-        let unit = exp2i(-scale);
-        let (major_scaled, minor_scaled) = (major * unit, minor * unit);
-        let squares = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
-        Ok(Torus { center, major, minor, frame, scale, unit, major_scaled, minor_scaled, squares })
+    fn framed(center: DVec3, frame: [DoubleVector; 3], major: f64, minor: f64) -> Result<Self, Error> {
+        let center = checked_point("center", center)?;
+        let major = checked_length("major", major)?;
+        let minor = checked_length("minor", minor)?;
+        let scale = exponent(if major > minor { major } else { minor });
+        let (major_scaled, minor_scaled) = (major * exp2i(-scale), minor * exp2i(-scale));
+        let (squares, twice) = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
+        Ok(Torus {
+            center,
+            major,
+            minor,
+            frame,
+            axis: frame[2].high(),
+            scale,
+            major_scaled,
+            minor_scaled,
+            reach: major_scaled + minor_scaled,
+            squares,
+            twice,
+        })
     }
 
     /// The centre.
@@ -90,7 +104,7 @@ impl Torus {
 
     /// The axis, of length one as near as `f64` can say.
     pub fn axis(&self) -> DVec3 {
-        self.own_axis(2)
+        self.axis
     }
 
     /// The radius of the generating circle.
@@ -103,9 +117,8 @@ impl Torus {
         self.minor
     }
 
-    fn own_axis(&self, i: usize) -> DVec3 {
-        let [x, y, z] = self.frame[i];
-        DVec3::new(x.high, y.high, z.high)
+    fn scaled(&self, ray: &Ray) -> Option<ScaledRay> {
+        ScaledRay::new(ray, self.center, self.scale)
     }
 
     /// The torus scaled, turned and moved, its own axes with it.
@@ -117,43 +130,48 @@ impl Torus {
             self.frame
         } else {
             kernel::run(Frame {
-                axis: by.direction(self.own_axis(2)),
-                hint: Some(by.direction(self.own_axis(0))),
+                axis: by.direction(self.axis),
+                hint: Some(by.direction(self.frame[0].high())),
             })
         };
         Torus::framed(by.point(self.center), frame, self.major * by.scale(), self.minor * by.scale())
     }
 }
 
+/// `R^2 + r^2` and `2 R^2`.
 struct Squares {
     major: f64,
     minor: f64,
 }
 
 impl Task for Squares {
-    type Output = Double;
+    type Output = (Double, Double);
+
     #[inline(always)]
-    fn run<P: Product>(self) -> Double {
-        Double::product::<P>(self.major, self.major) + Double::product::<P>(self.minor, self.minor)
+    fn run<P: Product>(self) -> (Double, Double) {
+        let square = Double::product::<P>(self.major, self.major);
+        (square + Double::product::<P>(self.minor, self.minor), square.scale_exact(2.0))
     }
 }
 
-/// All crossings of the line, each through `each` until that says stop.
+/// All crossings of the line in double-double, those inside the interval through `each` until that says stop.
 struct Walk<'a, F> {
     torus: &'a Torus,
-    ray: &'a Ray,
+    ray: &'a ScaledRay,
     within: Interval,
     each: F,
 }
 
 impl<F: FnMut(Hit) -> bool> Task for Walk<'_, F> {
     type Output = ();
+
     #[inline(always)]
     fn run<P: Product>(mut self) {
-        let Some(line) = Approach::new::<P>(self.torus, self.ray) else { return };
-        let crossings = Quartic::new::<P>(self.torus, &line).crossings::<P>();
+        let line = Line::of::<P>(self.torus, self.ray);
+        let crossings = exact::crossings::<P>(self.torus, &line);
         for (index, x) in crossings.as_slice().iter().enumerate() {
-            if let Some(hit) = self.within.admit(line.t::<P>(*x), 0, index as u32)
+            let t = self.ray.unscale(line.parameter_at::<P>(*x));
+            if let Some(hit) = admit(self.within, t, 0, index as u32)
                 && !(self.each)(hit)
             {
                 return;
@@ -162,35 +180,53 @@ impl<F: FnMut(Hit) -> bool> Task for Walk<'_, F> {
     }
 }
 
+impl Torus {
+    #[cold]
+    fn first_exact(&self, ray: &ScaledRay, within: Interval) -> Option<Hit> {
+        let mut first = None;
+        let each = |hit| {
+            first = Some(hit);
+            false
+        };
+        kernel::run(Walk { torus: self, ray, within, each });
+        first
+    }
+}
+
 impl Primitive for Torus {
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let mut first = None;
-        kernel::run(Walk {
-            torus: self,
-            ray,
-            within,
-            each: |hit| {
-                first = Some(hit);
-                false
-            },
-        });
-        first
+        let ray = self.scaled(ray)?;
+        match kernel::run(Filter { torus: self, ray: &ray, within, all: false }) {
+            Verdict::Certain(hits) => hits.iter().next(),
+            Verdict::Doubt => self.first_exact(&ray, within),
+        }
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        kernel::run(Walk {
-            torus: self,
-            ray,
-            within,
-            each: |hit| {
-                each(hit);
-                true
-            },
-        });
+        let Some(ray) = self.scaled(ray) else { return };
+        match kernel::run(Filter { torus: self, ray: &ray, within, all: true }) {
+            Verdict::Certain(hits) => hits.iter().for_each(each),
+            Verdict::Doubt => {
+                let each = |hit| {
+                    each(hit);
+                    true
+                };
+                kernel::run(Walk { torus: self, ray: &ray, within, each });
+            }
+        }
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        kernel::run(record::Record { torus: self, ray, hit })
+        let Some(scaled) = self.scaled(ray) else {
+            // No ray that hits comes here.
+            let point = ray.at(hit.t());
+            return Surface::new(hit.t(), point, point - self.center, self.axis, largest(point));
+        };
+        let near = || Near { torus: self, ray: &scaled, hit };
+        match kernel::run(near()) {
+            Some(surface) => surface,
+            None => kernel::run(Thorough(near())),
+        }
     }
 
     /// Along each coordinate axis the circle reaches `major` times the sine of the angle to the axis; the tube adds
@@ -200,11 +236,10 @@ impl Primitive for Torus {
         // squares), the sum by 1, the corner by half a unit of itself, and the point that `surface` reports by
         // another half. 8 units of the size and 2 of the corner cover all of it.
         const UNIT: f64 = f64::EPSILON;
-        let [first, second] = [self.own_axis(0), self.own_axis(1)];
+        let [first, second] = [self.frame[0].high(), self.frame[1].high()];
         let reach = |i: usize| {
             let (a, b) = (first.to_array()[i], second.to_array()[i]);
-            (self.major * crate::math::sqrt(a * a + b * b) + self.minor)
-                + 8.0 * UNIT * (self.major + self.minor)
+            (self.major * sqrt(a * a + b * b) + self.minor) + 8.0 * UNIT * (self.major + self.minor)
         };
         let reach = DVec3::new(reach(0), reach(1), reach(2));
         let grown = reach + (self.center.abs() + reach) * (2.0 * UNIT);
