@@ -1,8 +1,7 @@
 //! Reads a scene and its pictures from files.
 
 use crate::failure::Failure;
-use rt_shade::text::{self, Diagnostics, PictureLoader};
-use rt_shade::{Scene, Settings};
+use rt_shade::{Scene, Settings, text};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -45,21 +44,10 @@ pub fn load(path: &Path) -> Result<Loaded, Failure> {
         _ => Path::new("."),
     };
     let pictures = |path: &str| read_picture(folder, path);
-    let loaded = parse(&name, &bytes, &pictures);
+    let loaded = text::load(&name, &bytes, &pictures);
     let text::Loaded { scene, settings, .. } = loaded.map_err(|errors| Failure::Input(errors.to_string()))?;
     let hash = crate::place::mix(crate::place::EMPTY_HASH, &bytes);
     Ok(Loaded { scene, settings, hash, load: start.elapsed(), build: Duration::ZERO })
-}
-
-/// Parses the scene; the file's ending tells the format.
-fn parse(name: &str, bytes: &[u8], pictures: &dyn PictureLoader) -> Result<text::Loaded, Diagnostics> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text::load_toml(name, text, pictures),
-        Err(error) => {
-            let at = error.valid_up_to();
-            Err(Diagnostics::of_file(name, format!("not UTF-8 text: byte {at} cannot be part of it")))
-        }
-    }
 }
 
 fn read_at_most(mut from: impl Read, most: u64) -> io::Result<Vec<u8>> {
