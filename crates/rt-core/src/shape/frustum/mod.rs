@@ -97,7 +97,7 @@ impl Task for Measure {
 impl Frustum {
     /// Checks and measures.
     ///
-    /// `names`: of the radii, for the error; a radius may be zero where the caller checked that not both are.
+    /// `names`: of the radii, for the error; the smaller radius, known to be zero or more, may be as small as it likes.
     pub fn new(
         base: DVec3,
         radii: [f64; 2],
@@ -107,11 +107,8 @@ impl Frustum {
     ) -> Result<Self, Error> {
         let base = checked_point("base", base)?;
         let top = checked_point("top", top)?;
-        for (name, radius) in names.into_iter().zip(radii) {
-            if radius != 0.0 {
-                checked_length(name, radius)?;
-            }
-        }
+        let larger = if radii[0] >= radii[1] { 0 } else { 1 };
+        checked_length(names[larger], radii[larger])?;
         if base == top {
             return Err(Error::Coincident { what: "base and top", value: base });
         }
