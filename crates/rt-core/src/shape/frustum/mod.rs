@@ -78,7 +78,12 @@ impl Task for Measure {
         let own = exponent(largest(along.high()));
         let along = along.scale_exact(exp2i(-own));
         let length = along.length_squared::<P>().sqrt::<P>();
-        let axis = along.mul::<P>(Double::ONE.div::<P>(length));
+        // Quotients, not products with a reciprocal: an axis along a coordinate axis stays exact.
+        let axis = DoubleVector {
+            x: along.x.div::<P>(length),
+            y: along.y.div::<P>(length),
+            z: along.z.div::<P>(length),
+        };
         let growth = Double::difference(self.radii[1], self.radii[0]).scale_exact(exp2i(-own));
         let slope = growth.div::<P>(length);
         // The slope may be huge or tiny: divide by the larger of the two.
