@@ -34,6 +34,8 @@ pub struct Scene {
     pub(crate) geometry: Geometry,
     /// By object: what it leaves of the light of a lamp.
     pub(crate) blocks: Vec<Blocks>,
+    /// Whether every object stops all light.
+    pub(crate) all_opaque: bool,
     /// By object: how its texture coordinates lead to a picture.
     pub(crate) mappings: Vec<Mapping>,
     /// The media that the eye is in.
@@ -224,7 +226,8 @@ impl SceneBuilder {
                 false => Blocks::Some(transmit),
             }
         });
-        let blocks = blocks.collect();
+        let blocks: Vec<Blocks> = blocks.collect();
+        let all_opaque = blocks.iter().all(|&blocks| blocks == Blocks::All);
         let geometry = self.geometry.build();
         let mappings = geometry.shapes().iter().map(|shape| match shape {
             Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
@@ -243,6 +246,7 @@ impl SceneBuilder {
             objects: self.objects,
             geometry,
             blocks,
+            all_opaque,
             mappings,
             around_eye,
         })

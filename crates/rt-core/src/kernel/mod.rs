@@ -12,7 +12,7 @@ mod memory;
 mod stack;
 mod task;
 
-pub use boxes::{Boxes, Row, SlabRay, round_down, round_up};
+pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::vec_on_large_pages;
