@@ -129,7 +129,7 @@ fn times(cases: &[&Case], solvers: &[Solver], seconds: f64) -> Vec<f64> {
 }
 
 fn main() {
-    let path = std::env::args().nth(1).unwrap_or_else(|| "../../shared/cases/quartics.jsonl".into());
+    let path = std::env::args().nth(1).unwrap_or_else(|| "../shared/cases/quartics.jsonl".into());
     let detail = std::env::args().any(|a| a == "families");
     let all = load(&path);
     let mut sets: Vec<(String, Vec<&Case>)> = vec![
