@@ -95,14 +95,28 @@ impl Cuboid {
         if !ray.is_valid() { None } else { run(Span { cuboid: self, ray }) }
     }
 
+    /// The first crossing, when `f64` leaves a doubt. An interval that ends exactly at a parameter that `f64` gives
+    /// was made from that hit, and does not contain it.
     #[cold]
     #[inline(never)]
     fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         let [near, far] = self.span_exactly(ray)?;
-        within.admit(near.t, near.face, 0).or_else(|| within.admit(far.t, far.face, 1))
+        let slabs = self.slabs(ray);
+        let (entry, leave) = slabs.ends();
+        let ended = |t: f64| slabs.sound && (t == within.min || t == within.max);
+        let first = if ended(entry) { None } else { within.admit(near.t, near.face, 0) };
+        first.or_else(|| if ended(leave) { None } else { within.admit(far.t, far.face, 1) })
     }
 
-    /// The crossings with a box along the world's axes; `None` in doubt.
+    #[inline(always)]
+    fn slabs(&self, ray: &Ray) -> Slabs {
+        match &self.turn {
+            None => self.span(ray),
+            Some(turn) => self.span_turned(turn, ray),
+        }
+    }
+
+    /// The crossings with a box along the world's axes.
     #[inline(always)]
     fn span(&self, ray: &Ray) -> Slabs {
         let inverse = 1.0 / ray.direction;
@@ -153,57 +167,53 @@ struct Slabs {
 }
 
 impl Slabs {
+    /// Where the line enters and leaves.
+    #[inline(always)]
+    fn ends(&self) -> (f64, f64) {
+        let (a, b) = (self.a, self.b);
+        let entry = greater(lesser(a.x, b.x), greater(lesser(a.y, b.y), lesser(a.z, b.z)));
+        let leave = lesser(greater(a.x, b.x), lesser(greater(a.y, b.y), greater(a.z, b.z)));
+        (entry, leave)
+    }
+
     /// The first crossing; `Err` in doubt.
     #[inline(always)]
     fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
         let (a, b) = (self.a, self.b);
         let near = DVec3::new(lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z));
         let far = DVec3::new(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z));
-        let (i, entry, before) = greatest(near);
-        // Products instead of `t - 4 u |t|`: an infinite parameter stays infinite.
-        let low = |t: f64| lesser(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) - self.slack;
-        let high = |t: f64| greater(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) + self.slack;
-        let leave = lesser(far.x, lesser(far.y, far.z));
-        if !self.sound {
+        let (entry, leave) = self.ends();
+        // Two parameters that err by 4 u of themselves can only be out of order when each is within 9 u of the
+        // other: `apart` needs the smaller one alone, which is finite when one of them is infinite.
+        let apart = |t: f64, s: f64| (t - s).abs() > (9.0 * U) * lesser(t.abs(), s.abs()) + 2.0 * self.slack;
+        if !(self.sound & apart(entry, leave)) {
             return Err(());
         }
-        if low(entry) > high(leave) {
+        if entry > leave {
             return Ok(None);
         }
-        if !(high(entry) < low(leave)) {
+        let enters = entry > within.min;
+        let (t, other) = if enters {
+            (entry, greater(lesser(near.x, near.y), lesser(greater(near.x, near.y), near.z)))
+        } else {
+            (leave, lesser(greater(far.x, far.y), greater(lesser(far.x, far.y), far.z)))
+        };
+        // On which side of the ends it lies has to be certain, and which face it is.
+        let clear = |t: f64, end: f64| (t - end).abs() > (4.0 * U) * t.abs() + self.slack;
+        if !(clear(entry, within.min) & clear(t, within.min) & clear(t, within.max)) {
             return Err(());
         }
-        // Which face it is has to be certain, and on which side of the ends of the interval it lies. An end that
-        // equals a parameter was made from that hit, and excludes it.
-        if low(entry) > within.min {
-            if high(entry) < within.max && low(entry) > high(before) {
-                let back = !(self.backward[i] > 0.0);
-                return Ok(within.admit(entry, 2 * i as u32 + back as u32, 0));
-            }
-            return if low(entry) > within.max || entry == within.max { Ok(None) } else { Err(()) };
-        }
-        if high(leave) < within.min || leave == within.min || !(within.min < within.max) {
+        if !within.contains(t) {
             return Ok(None);
         }
-        if (high(entry) < within.min || entry == within.min) && low(leave) > within.min {
-            if low(leave) > within.max || leave == within.max {
-                return Ok(None);
-            }
-            let (j, exit, after) = greatest(-far);
-            if high(leave) < within.max && low(-after) > high(-exit) {
-                let forward = self.backward[j] > 0.0;
-                return Ok(within.admit(-exit, 2 * j as u32 + forward as u32, 1));
-            }
+        if !apart(t, other) {
+            return Err(());
         }
-        Err(())
+        let planes = if enters { near } else { far };
+        let axis = (t == planes.y) as usize + 2 * (t == planes.z) as usize;
+        let backward = [self.backward.x < 0.0, self.backward.y < 0.0, self.backward.z < 0.0][axis.min(2)];
+        Ok(within.admit(t, 2 * axis as u32 + (backward == enters) as u32, !enters as u32))
     }
-}
-
-/// The index of the greatest component, the component, and the greatest of the others.
-#[inline(always)]
-fn greatest(v: DVec3) -> (usize, f64, f64) {
-    let (i, most, rest) = if v.x > v.y { (0, v.x, v.y) } else { (1, v.y, v.x) };
-    if v.z > most { (2, v.z, most) } else { (i, most, greater(rest, v.z)) }
 }
 
 /// One crossing of the line: the face, and the parameter correctly rounded.
@@ -342,10 +352,7 @@ impl Task for Along<'_> {
 impl Primitive for Cuboid {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let slabs = match &self.turn {
-            None => self.span(ray),
-            Some(turn) => self.span_turned(turn, ray),
-        };
+        let slabs = self.slabs(ray);
         match slabs.first(within) {
             Ok(hit) => hit,
             Err(()) => self.hit_exactly(ray, within),

@@ -1,6 +1,6 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
 use crate::double::Double;
 use crate::kernel::{Product, Task, run};
 use crate::math::sqrt;
@@ -82,12 +82,13 @@ impl Disk {
         Some(at)
     }
 
-    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
-        if !ray.is_valid() || rough == within.min || rough == within.max {
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.center, self.normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
             return None;
         }
         let at = self.meet(ray)?;
@@ -123,34 +124,19 @@ impl Task for InDisk<'_> {
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let w = self.center - ray.origin;
-        let n = self.normal * w;
-        let d = self.normal * ray.direction;
-        let denominator = d.x + d.y + d.z;
-        let inverse = 1.0 / denominator;
-        let t = (n.x + n.y + n.z) * inverse;
-        // As for the plane, with one more rounding in the quotient: |dt| |denominator| <= slack.
-        let (n, d) = (n.abs(), d.abs());
-        let sizes = d.x + d.y + d.z;
-        let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
-        // The point t d - w errs in each coordinate by |dt| |d| and three roundings; `error` bounds the sum of all
-        // three. |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
-        // coordinates' sizes; the squares round by 4 u of themselves.
-        let p = ray.direction * t - w;
-        let (w, v, q) = (w.abs(), ray.direction.abs(), p.abs());
-        let error =
-            (v.x + v.y + v.z) * (slack * inverse.abs() + (3.0 * U) * t.abs()) + (3.0 * U) * (w.x + w.y + w.z);
+        let rough = Rough::new(self.center, self.normal, ray);
+        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
+        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
+        let p = ray.direction * rough.t - rough.w;
         let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
-        let doubt = error * ((q.x + q.y + q.z) + self.radius) + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
-        let from_min = (t - within.min).abs() * denominator.abs();
-        let from_max = (t - within.max).abs() * denominator.abs();
-        let certain = slack > LEAST_CERTAIN && flat::crosses(denominator, sizes);
-        if certain && rho2 - r2 > doubt {
+        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
+        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
+        if rough.sound & (rho2 - r2 > doubt) {
             None
-        } else if certain && r2 - rho2 > doubt && from_min > slack && from_max > slack {
-            within.admit(t, 0, 0)
+        } else if rough.decides(within) & (r2 - rho2 > doubt) {
+            within.admit(rough.t, 0, 0)
         } else {
-            self.hit_exactly(ray, within, t)
+            self.hit_exactly(ray, within)
         }
     }
 

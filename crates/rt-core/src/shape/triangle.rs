@@ -6,7 +6,7 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -121,12 +121,13 @@ impl Triangle {
         Some(at)
     }
 
-    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
-        if !ray.is_valid() || rough == within.min || rough == within.max {
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.a, self.normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
             return None;
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
@@ -244,28 +245,18 @@ impl Primitive for Triangle {
         let least = lesser(of_a, lesser(of_b, of_c));
         let most = greater(of_a, greater(of_b, of_c));
         // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
-        let certain = base > LEAST_BASE && base < MOST_BASE && doubt > LEAST_CERTAIN && doubt < MOST_BASE;
-        if certain && least < -doubt && most > doubt {
+        let certain =
+            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
+        if certain & (least < -doubt) & (most > doubt) {
             return None;
         }
-        let n = self.normal * s;
-        let t = (n.x + n.y + n.z) / denominator;
-        if certain && (least > doubt || most < -doubt) {
-            // As for the plane; the rounded normal adds u to both sums.
-            let (n, q) = (n.abs(), (self.normal * d).abs());
-            let sizes = q.x + q.y + q.z;
-            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
-            let from_min = (t - within.min).abs() * denominator.abs();
-            let from_max = (t - within.max).abs() * denominator.abs();
-            if from_min > slack
-                && from_max > slack
-                && slack > LEAST_CERTAIN
-                && flat::crosses(denominator, sizes)
-            {
-                return within.admit(t, 0, 0);
+        if certain & ((least > doubt) | (most < -doubt)) {
+            let rough = Rough::new(self.a, self.normal, ray);
+            if rough.decides(within) {
+                return within.admit(rough.t, 0, 0);
             }
         }
-        self.hit_exactly(ray, within, t)
+        self.hit_exactly(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
