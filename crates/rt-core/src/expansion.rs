@@ -128,3 +128,34 @@ pub(crate) fn product<P: Product>(a: f64, b: f64) -> Double {
     let p = Double::product::<P>(a, b);
     if p.high.abs() < LEAST { Double::from(p.high) } else { p }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Dekker;
+
+    #[test]
+    fn sums_that_cancel_are_exact() {
+        let mut sum = Expansion::ZERO;
+        for x in [1e300, 1.0, -1e300, 1e-300, -1.0] {
+            sum.add(x);
+        }
+        assert_eq!((sum.sign(), sum.to_double()), (1, Double::from(1e-300)));
+        sum.add(-1e-300);
+        assert_eq!((sum.sign(), sum.to_double()), (0, Double::ZERO));
+    }
+
+    #[test]
+    fn products_that_cancel_are_exact() {
+        // (1 + e)(1 - e) - 1 = -e^2.
+        let e = f64::EPSILON;
+        let mut sum = Expansion::ZERO;
+        sum.add_product::<Dekker>(1.0 + e, 1.0 - e);
+        sum.add(-1.0);
+        assert_eq!(sum.to_double(), Double::from(-e * e));
+        let mut other = Expansion::ZERO;
+        other.add_double_product::<Dekker>(Double::sum(1.0, e * e), Double::sum(1.0, -e * e));
+        other.add(-1.0);
+        assert_eq!(other.to_double(), Double::from(-e * e * e * e));
+    }
+}

@@ -492,3 +492,86 @@ fn lesser(a: f64, b: f64) -> f64 {
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit() -> Cuboid {
+        Cuboid::new([0.0; 3], [1.0; 3]).unwrap()
+    }
+
+    fn faces(cuboid: &Cuboid, ray: &Ray) -> Vec<(f64, u32)> {
+        let mut found = Vec::new();
+        cuboid.crossings(ray, Interval::LINE, &mut |hit| found.push((hit.t(), hit.part())));
+        found
+    }
+
+    #[test]
+    fn faces_are_numbered_by_axis_and_side() {
+        for k in 0..3 {
+            let axis = DVec3::AXES[k];
+            let ray = Ray::new(DVec3::splat(0.5) - axis * 2.0, axis);
+            assert_eq!(faces(&unit(), &ray), [(1.5, 2 * k as u32), (2.5, 2 * k as u32 + 1)]);
+            let hit = unit().hit(&ray, Interval::FORWARD).unwrap();
+            assert_eq!(unit().surface(&ray, hit).normal, -axis);
+            let back = unit().hit(&ray, Interval::new(2.0, 9.0)).unwrap();
+            assert_eq!((back.part(), back.root()), (2 * k as u32 + 1, 1));
+        }
+    }
+
+    #[test]
+    fn a_touched_edge_is_no_hit_but_a_face_is_not_lost() {
+        // Past the edge x = 0, y = 1, at 45 degrees.
+        let touching = Ray::new([-1.0, 0.0, 0.5], [1.0, 1.0, 0.0]);
+        assert_eq!(faces(&unit(), &touching), []);
+        assert_eq!(faces(&unit(), &Ray::new([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0])).len(), 2);
+        // Along the face x = 0: zero times infinity.
+        for zero in [0.0, -0.0] {
+            let along = Ray::new([0.0, 0.5, -1.0], [zero, zero, 1.0]);
+            assert_eq!(faces(&unit(), &along), [(1.0, 4), (2.0, 5)]);
+            assert_eq!(unit().hit(&along, Interval::FORWARD).map(|h| h.t()), Some(1.0));
+        }
+        assert_eq!(faces(&unit(), &Ray::new([-f64::MIN_POSITIVE, 0.5, -1.0], [0.0, 0.0, 1.0])), []);
+    }
+
+    #[test]
+    fn a_flat_box_is_hit_from_both_sides() {
+        let tile = Cuboid::new([0.0, 2.0, 0.0], [1.0, 2.0, 1.0]).unwrap();
+        let down = Ray::new([0.5, 3.0, 0.5], [0.0, -1.0, 0.0]);
+        assert_eq!(tile.hit(&down, Interval::FORWARD).map(|h| (h.t(), h.part())), Some((1.0, 3)));
+        assert_eq!(faces(&tile, &down), [(1.0, 3), (1.0, 2)]);
+    }
+
+    #[test]
+    fn a_turned_box_keeps_its_own_axes() {
+        let turn =
+            Similarity::IDENTITY.rotated(DVec3::Z, 90.0).unwrap().translated([10.0, 0.0, 0.0]).unwrap();
+        let cuboid = Cuboid::new([0.0; 3], [1.0, 2.0, 3.0]).unwrap().transformed(&turn).unwrap();
+        assert_eq!(cuboid.axes(), [DVec3::Y, -DVec3::X, DVec3::Z]);
+        // In the world it fills x from 8 to 10, y from 0 to 1: its own x axis is the world's y.
+        let ray = Ray::new([9.5, -4.0, 1.0], [0.0, 2.0, 0.0]);
+        let hit = cuboid.hit(&ray, Interval::FORWARD).unwrap();
+        let surface = cuboid.surface(&ray, hit);
+        assert_eq!((surface.t, hit.part(), surface.normal), (2.0, 0, -DVec3::Y));
+        assert_eq!(surface.object_point, DVec3::new(0.0, 0.5, 1.0));
+    }
+
+    #[test]
+    fn leaving_inside_always_ends() {
+        let ray = Ray::new([0.5, 0.5, -1.0], [0.0, 0.0, 1.0]);
+        let hit = unit().hit(&ray, Interval::FORWARD).unwrap();
+        let from = unit().surface(&ray, hit).departure(0, hit, Side::Inside);
+        let (start, within) = from.through(ray.direction);
+        let exit = unit().hit_leaving(&start, within, &from).unwrap();
+        assert_eq!((exit.t(), exit.part()), (1.0, 5));
+        let outward = unit().surface(&ray, hit).departure(0, hit, Side::Outside);
+        assert_eq!(unit().hit_leaving(&start, within, &outward), None);
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Cuboid::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]), Err(Error::Unordered { .. })));
+        assert!(matches!(Cuboid::new([f64::NAN; 3], [1.0; 3]), Err(Error::NotFinite { .. })));
+    }
+}

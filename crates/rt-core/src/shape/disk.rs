@@ -171,3 +171,41 @@ impl Primitive for Disk {
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_belongs_to_it() {
+        let disk = Disk::new([0.0; 3], [0.0, 0.0, 2.0], 5.0).unwrap();
+        let down = |x: f64, y: f64| disk.hit(&Ray::new([x, y, 7.0], [0.0, 0.0, -2.0]), Interval::FORWARD);
+        assert_eq!(down(3.0, 4.0).map(|h| h.t()), Some(3.5));
+        assert_eq!(down(3.0, 4.0_f64.next_up()), None);
+        assert!(down(3.0, 4.0_f64.next_down()).is_some());
+    }
+
+    #[test]
+    fn rims_of_extreme_sizes() {
+        for radius in [1e-150, 1e150] {
+            let disk = Disk::new([0.0; 3], [0.0, 1.0, 0.0], radius).unwrap();
+            let at = |x: f64| disk.hit(&Ray::new([x, radius, 0.0], [0.0, -1.0, 0.0]), Interval::FORWARD);
+            assert!(at(radius).is_some() && at(radius.next_up()).is_none());
+        }
+    }
+
+    #[test]
+    fn bounds_of_a_tilted_disk() {
+        let disk = Disk::new([10.0, 0.0, 0.0], [0.0, 0.6, 0.8], 2.0).unwrap();
+        let bounds = disk.bounds().unwrap();
+        assert!((bounds.max - DVec3::new(12.0, 1.6, 1.2)).abs().max_element() < 1e-14);
+        assert!(bounds.contains(DVec3::new(12.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], 0.0), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], f64::NAN), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
+    }
+}

@@ -123,3 +123,63 @@ impl Primitive for Plane {
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_counts_in_world_axes_exactly() {
+        let floor = Plane::new([0.1, 0.0, -0.3], [0.0, 5.0, 0.0]).unwrap();
+        assert_eq!(floor.texture_axes(), [DVec3::X, DVec3::Z]);
+        let ray = Ray::new([1e6 + 0.7, 2.0, -0.25], [0.0, -3.0, 0.0]);
+        let hit = floor.hit(&ray, Interval::FORWARD).unwrap();
+        let surface = floor.surface(&ray, hit);
+        assert_eq!((surface.t, surface.normal), (2.0 / 3.0, DVec3::Y));
+        assert_eq!(surface.object_point, DVec3::new(1e6 + 0.7 - 0.1, -0.25 + 0.3, 0.0));
+        assert_eq!(surface.local.y, 0.0);
+        assert_eq!(surface.point, DVec3::new(1e6 + 0.7, 0.0, -0.25));
+    }
+
+    #[test]
+    fn the_length_of_the_normal_does_not_matter() {
+        for length in [1e-150, 1e-20, 7.0, 1e150] {
+            let plane = Plane::new([0.0, 1.0, 0.0], DVec3::new(0.0, 0.6, 0.8) * length).unwrap();
+            let ray = Ray::new([0.0, 5.0, 0.0], [0.0, -1e-150, 0.0]);
+            let hit = plane.hit(&ray, Interval::FORWARD).unwrap();
+            assert!((plane.surface(&ray, hit).t / 4e150 - 1.0).abs() < 1e-15);
+            assert!((plane.normal() - DVec3::new(0.0, 0.6, 0.8)).length() < 4e-16);
+        }
+    }
+
+    #[test]
+    fn rays_in_the_plane_or_beside_it_miss() {
+        let plane = Plane::new([0.0; 3], [1.0, 2.0, -3.0]).unwrap();
+        for origin in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] {
+            assert_eq!(plane.hit(&Ray::new(origin, [1.0, 1.0, 1.0]), Interval::LINE), None);
+        }
+    }
+
+    #[test]
+    fn an_interval_made_from_a_hit_does_not_contain_it() {
+        let plane = Plane::new([0.3, 0.2, 0.1], [1.0, 2.0, -3.1]).unwrap();
+        let mut random = 1_u32;
+        for _ in 0..1000 {
+            let mut number = || {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(random) / f64::from(u32::MAX) - 0.5
+            };
+            let ray = Ray::new([number(), number(), number()], [number(), number(), number()]);
+            let Some(hit) = plane.hit(&ray, Interval::LINE) else { continue };
+            assert_eq!(plane.hit(&ray, Interval::LINE.until(hit.t())), None);
+            assert_eq!(plane.hit(&ray, Interval::LINE.after(hit.t())), None);
+        }
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Plane::new([0.0; 3], [0.0; 3]), Err(Error::ZeroLength { .. })));
+        assert!(matches!(Plane::new([f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]), Err(Error::NotFinite { .. })));
+        assert!(matches!(Plane::new([0.0; 3], [0.0, f64::INFINITY, 0.0]), Err(Error::NotFinite { .. })));
+    }
+}

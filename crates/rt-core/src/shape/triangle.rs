@@ -313,3 +313,48 @@ fn lesser(a: f64, b: f64) -> f64 {
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_and_corners_belong_to_it() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0]).unwrap();
+        let down = |x: f64, y: f64| triangle.hit(&Ray::new([x, y, 2.0], [0.0, 0.0, -1.0]), Interval::FORWARD);
+        for (x, y) in [(0.0, 0.0), (3.0, 0.0), (0.0, 3.0), (1.0, 2.0), (2.0, 0.0)] {
+            assert!(down(x, y).is_some(), "{x} {y}");
+        }
+        assert_eq!(down(1.0, 2.0_f64.next_up()), None);
+        assert_eq!(down(2.0, -f64::MIN_POSITIVE), None);
+    }
+
+    #[test]
+    fn weights_and_normals() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0]).unwrap();
+        let smooth = triangle.with_normals([0.0, 0.0, 3.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+        let ray = Ray::new([1.0, 1.0, 1.0], [0.0, 0.0, -1.0]);
+        let surface = smooth.surface(&ray, smooth.hit(&ray, Interval::FORWARD).unwrap());
+        assert_eq!(surface.uv, DVec2::new(0.5, 0.25));
+        assert_eq!(surface.normal, DVec3::Z);
+        let half = 0.5_f64.sqrt();
+        assert!((surface.shading_normal - DVec3::new(0.0, half, half)).length() < 1e-15);
+    }
+
+    #[test]
+    fn the_normal_of_a_sliver_is_exact() {
+        let (a, b) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.1, 1.2, 1.3));
+        let triangle = Triangle::new(a, b, DVec3::new(0.6, 0.7, 0.8_f64.next_up())).unwrap();
+        // The third corner lies a few roundings off the line: the normal is across it all the same.
+        assert!(triangle.normal().dot((b - a).normalize()).abs() < 2e-16);
+    }
+
+    #[test]
+    fn constructor_errors() {
+        let line = Triangle::new([0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]);
+        assert!(matches!(line, Err(Error::Degenerate { .. })));
+        let fine = Triangle::new([0.0, 0.0, 0.0], [1e-150, 0.0, 0.0], [0.0, 1e-150, 0.0]).unwrap();
+        assert_eq!(fine.normal(), DVec3::Z);
+        assert!(matches!(fine.with_normals(DVec3::Z, DVec3::ZERO, DVec3::Z), Err(Error::ZeroLength { .. })));
+    }
+}
