@@ -99,7 +99,7 @@ impl Expansion {
 
     /// The sum of two `f64` that is nearest, within 2^-104 of the exact value, relatively (the two leading components
     /// of Shewchuk's compress).
-    pub(crate) fn to_double(&self) -> Double {
+    pub(crate) fn rounded(&self) -> Double {
         let mut parts = self.parts[..self.len].iter().rev();
         let mut sum = parts.next().copied().unwrap_or(0.0);
         let mut high = None;
@@ -140,9 +140,9 @@ mod tests {
         for x in [1e300, 1.0, -1e300, 1e-300, -1.0] {
             sum.add(x);
         }
-        assert_eq!((sum.sign(), sum.to_double()), (1, Double::from(1e-300)));
+        assert_eq!((sum.sign(), sum.rounded()), (1, Double::from(1e-300)));
         sum.add(-1e-300);
-        assert_eq!((sum.sign(), sum.to_double()), (0, Double::ZERO));
+        assert_eq!((sum.sign(), sum.rounded()), (0, Double::ZERO));
     }
 
     #[test]
@@ -152,10 +152,10 @@ mod tests {
         let mut sum = Expansion::ZERO;
         sum.add_product::<Dekker>(1.0 + e, 1.0 - e);
         sum.add(-1.0);
-        assert_eq!(sum.to_double(), Double::from(-e * e));
+        assert_eq!(sum.rounded(), Double::from(-e * e));
         let mut other = Expansion::ZERO;
         other.add_double_product::<Dekker>(Double::sum(1.0, e * e), Double::sum(1.0, -e * e));
         other.add(-1.0);
-        assert_eq!(other.to_double(), Double::from(-e * e * e * e));
+        assert_eq!(other.rounded(), Double::from(-e * e * e * e));
     }
 }

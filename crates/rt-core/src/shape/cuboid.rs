@@ -330,7 +330,7 @@ fn turned_slab<P: Product>(
     }
     let mut high = low;
     high.add(size * scale);
-    (low.to_double(), high.to_double(), along.to_double())
+    (low.rounded(), high.rounded(), along.rounded())
 }
 
 /// A point of a face in the box's own axes, without the coordinate across it.

@@ -17,9 +17,9 @@ use glam::DVec3;
 pub struct Disk {
     center: DVec3,
     /// As given, times a power of two: largest component in `[1, 2)`.
-    normal: DVec3,
+    scaled_normal: DVec3,
     radius: f64,
-    unit_normal: DVec3,
+    normal: DVec3,
     axes: [DVec3; 2],
 }
 
@@ -35,8 +35,8 @@ impl Disk {
         let (normal, _) = flat::prescaled(flat::checked_direction("disk normal", normal.into())?);
         let radius = checked_length("disk radius", radius)?;
         let (first, second) = flat::plane_axes(normal);
-        let unit_normal = flat::unit(flat::doubles(normal));
-        Ok(Disk { center, normal, radius, unit_normal, axes: [first, second] })
+        let unit = flat::unit(flat::doubles(normal));
+        Ok(Disk { center, scaled_normal: normal, radius, normal: unit, axes: [first, second] })
     }
 
     /// The centre: the anchor of local and texture coordinates.
@@ -46,7 +46,7 @@ impl Disk {
 
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
-        self.unit_normal
+        self.normal
     }
 
     /// The radius.
@@ -64,21 +64,22 @@ impl Disk {
     /// # Errors
     /// As [`Disk::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        Disk::new(by.point(self.center), by.direction(self.normal), self.radius * by.scale())
+        Disk::new(by.point(self.center), by.direction(self.scaled_normal), self.radius * by.scale())
     }
 
     /// How far it reaches from its centre along each axis, rounded up: `radius sqrt(1 - n_i^2)`.
     fn reach(&self) -> DVec3 {
-        let n = self.unit_normal;
+        let n = self.normal;
         // sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates round once more.
         let reach = |a: f64, b: f64| self.radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
         DVec3::new(reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y))
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let plane = ExactPlane { anchor: self.center, normal: flat::doubles(self.normal), offset: 0.0 };
-        let mut at = flat::meet(&plane, ray, || flat::expansions(self.normal))?;
-        flat::settle(&mut at, self.normal);
+        let plane =
+            ExactPlane { anchor: self.center, normal: flat::doubles(self.scaled_normal), offset: 0.0 };
+        let mut at = flat::meet(&plane, ray, || flat::expansions(self.scaled_normal))?;
+        flat::settle(&mut at, self.scaled_normal);
         Some(at)
     }
 
@@ -87,7 +88,7 @@ impl Disk {
     #[cold]
     #[inline(never)]
     fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.center, self.normal, ray);
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
@@ -112,7 +113,7 @@ impl Task for InDisk<'_> {
         let shift = self.at.power - power;
         let part = |x: Double| Double { high: times_power(x.high, shift), low: times_power(x.low, shift) };
         let [x, y, z] = self.at.local.map(part);
-        let far = |x: Double| !(x.high.abs() <= 4.0);
+        let far = |x: Double| x.high.is_nan() || x.high.abs() > 4.0;
         if far(x) || far(y) || far(z) {
             return false;
         }
@@ -124,7 +125,7 @@ impl Task for InDisk<'_> {
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.center, self.normal, ray);
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
         // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
         // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
         let p = ray.direction * rough.t - rough.w;
@@ -149,13 +150,13 @@ impl Primitive for Disk {
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let Some(at) = self.meet(ray) else {
             // Only for a ray that this disk gave no hit for.
-            return Surface::new(hit.t(), self.center, DVec3::ZERO, self.unit_normal, self.radius);
+            return Surface::new(hit.t(), self.center, DVec3::ZERO, self.normal, self.radius);
         };
         // The hit is inside; what double-double leaves beside the rim is noise.
         let half = self.reach();
         let point = at.point(self.center).clamp(self.center - half, self.center + half);
         let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point))
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
             .with_uv(uv)
     }

@@ -281,7 +281,7 @@ fn near_anchor<P: Product>(
     d: [f64; 3],
     denominator: Double,
 ) -> [Double; 3] {
-    let m = cross::<P>(&d.map(Double::from), w).map(|m| m.to_double());
+    let m = cross::<P>(&d.map(Double::from), w).map(|m| m.rounded());
     [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (n[j].mul::<P>(m[k]) - n[k].mul::<P>(m[j])).div::<P>(denominator))
 }
 
@@ -319,7 +319,7 @@ fn exact_sums<P: Product>(
         numerator.add_expansion_product::<P>(&normal[i], w[i]);
         denominator.add_expansion_product::<P>(&normal[i], Double::from(d[i]));
     }
-    (numerator.to_double(), denominator.to_double())
+    (numerator.rounded(), denominator.rounded())
 }
 
 /// A vector of `f64` as exact expansions.

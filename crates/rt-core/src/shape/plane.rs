@@ -20,8 +20,8 @@ use glam::DVec3;
 pub struct Plane {
     point: DVec3,
     /// As given, times a power of two: largest component in `[1, 2)`.
+    scaled_normal: DVec3,
     normal: DVec3,
-    unit_normal: DVec3,
     axes: [DVec3; 2],
 }
 
@@ -34,7 +34,12 @@ impl Plane {
         let point = checked_point("plane point", point.into())?;
         let (normal, _) = flat::prescaled(flat::checked_direction("plane normal", normal.into())?);
         let (first, second) = flat::plane_axes(normal);
-        Ok(Plane { point, normal, unit_normal: flat::unit(flat::doubles(normal)), axes: [first, second] })
+        Ok(Plane {
+            point,
+            scaled_normal: normal,
+            normal: flat::unit(flat::doubles(normal)),
+            axes: [first, second],
+        })
     }
 
     /// The point it was made from: the anchor of local and texture coordinates.
@@ -44,7 +49,7 @@ impl Plane {
 
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
-        self.unit_normal
+        self.normal
     }
 
     /// The two unit vectors along which texture coordinates count.
@@ -57,15 +62,15 @@ impl Plane {
     /// # Errors
     /// As [`Plane::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        Plane::new(by.point(self.point), by.direction(self.normal))
+        Plane::new(by.point(self.point), by.direction(self.scaled_normal))
     }
 
     fn exact(&self) -> ExactPlane {
-        ExactPlane { anchor: self.point, normal: flat::doubles(self.normal), offset: 0.0 }
+        ExactPlane { anchor: self.point, normal: flat::doubles(self.scaled_normal), offset: 0.0 }
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        flat::meet(&self.exact(), ray, || flat::expansions(self.normal))
+        flat::meet(&self.exact(), ray, || flat::expansions(self.scaled_normal))
     }
 
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
@@ -73,7 +78,7 @@ impl Plane {
     #[cold]
     #[inline(never)]
     fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.point, self.normal, ray);
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
@@ -84,7 +89,7 @@ impl Plane {
 impl Primitive for Plane {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.point, self.normal, ray);
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
         if rough.decides(within) { within.admit(rough.t, 0, 0) } else { self.hit_exactly(ray, within) }
     }
 
@@ -97,18 +102,12 @@ impl Primitive for Plane {
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let Some(mut at) = self.meet(ray) else {
             // Only for a ray that this plane gave no hit for.
-            return Surface::new(
-                hit.t(),
-                ray.at(hit.t()),
-                ray.at(hit.t()) - self.point,
-                self.unit_normal,
-                0.0,
-            );
+            return Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0);
         };
-        flat::settle(&mut at, self.normal);
+        flat::settle(&mut at, self.scaled_normal);
         let point = at.point(self.point);
         let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point))
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
             .with_uv(uv)
     }
