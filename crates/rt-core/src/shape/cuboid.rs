@@ -10,6 +10,7 @@ use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
+use crate::scaled::{checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use core::cmp::Ordering;
 use glam::{DMat3, DVec2, DVec3};
@@ -50,8 +51,8 @@ impl Cuboid {
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for coordinates beyond 1e150, [`Error::Unordered`] unless
     /// `min <= max` in each coordinate.
     pub fn new(min: impl Into<DVec3>, max: impl Into<DVec3>) -> Result<Self, Error> {
-        let min = flat::checked_point("cuboid corner", min.into())?;
-        let max = flat::checked_point("cuboid corner", max.into())?;
+        let min = checked_point("cuboid corner", min.into())?;
+        let max = checked_point("cuboid corner", max.into())?;
         if !min.cmple(max).all() {
             return Err(Error::Unordered { min, max });
         }
@@ -81,8 +82,8 @@ impl Cuboid {
         if self.turn.is_none() && by.rotation() == DMat3::IDENTITY {
             return Cuboid::new(by.point(self.min), by.point(self.max));
         }
-        let corner = flat::checked_point("cuboid corner", by.point(self.corner()))?;
-        let max = flat::checked_point("cuboid size", self.size() * by.scale())?;
+        let corner = checked_point("cuboid corner", by.point(self.corner()))?;
+        let max = checked_point("cuboid size", self.size() * by.scale())?;
         let axes = self.axes().map(|axis| flat::unit(flat::doubles(by.direction(axis))));
         Ok(Cuboid { min: DVec3::ZERO, max, turn: Some(Turn { corner, axes }) })
     }
@@ -107,12 +108,18 @@ impl Cuboid {
         let inverse = 1.0 / ray.direction;
         let a = (self.min - ray.origin) * inverse;
         let b = (self.max - ray.origin) * inverse;
-        // Differences, quotients and products round three times; the fourth u pays for second order terms. Beyond
-        // these limits the quotient has lost digits or is infinite.
+        // Differences, quotients and products round three times; the fourth u pays for second order terms. Along an
+        // axis in which the ray does not move it lies between the planes or beside them: both parameters are infinite.
+        // Quotients of denormal directions, and a ray within a plane (0 times infinity), are left to exact arithmetic.
         let size = ray.direction.abs();
         let least = lesser(size.x, lesser(size.y, size.z));
-        let sound = least > exp2i(-1000) && size.x + size.y + size.z < exp2i(1000);
-        Slabs { a, b, error: DVec3::ZERO, relative: 4.0 * U, sound, backward: inverse }
+        let sound = size.x + size.y + size.z < exp2i(1000)
+            && ((least > exp2i(-1000) && (a.x + a.y + a.z).is_finite()) || {
+                let moves =
+                    |d: f64, a: f64, b: f64| (d > exp2i(-1000) || d == 0.0) && !a.is_nan() && !b.is_nan();
+                moves(size.x, a.x, b.x) && moves(size.y, a.y, b.y) && moves(size.z, a.z, b.z)
+            });
+        Slabs { a, b, slack: LEAST_CERTAIN, sound, backward: inverse }
     }
 
     /// The crossings with a turned box.
@@ -130,16 +137,16 @@ impl Cuboid {
         let error = (turned + lengths) * inverse.abs();
         let reach = v.x + v.y + v.z;
         let sound = reach > exp2i(-900) && reach < exp2i(1000);
-        Slabs { a, b, error, relative: 4.0 * U, sound, backward: inverse }
+        let slack = greater(error.x, greater(error.y, error.z)) + LEAST_CERTAIN;
+        Slabs { a, b, slack, sound, backward: inverse }
     }
 }
 
-/// The parameters of the planes of the faces and their errors: `error + relative |t|`.
+/// The parameters of the planes of the faces; each errs by `slack + 4 u |t|` at most.
 struct Slabs {
     a: DVec3,
     b: DVec3,
-    error: DVec3,
-    relative: f64,
+    slack: f64,
     sound: bool,
     /// Of the sign of the direction.
     backward: DVec3,
@@ -149,39 +156,43 @@ impl Slabs {
     /// The first crossing; `Err` in doubt.
     #[inline(always)]
     fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
-        let forward = |i: usize| self.backward.to_array()[i] > 0.0;
         let (a, b) = (self.a, self.b);
         let near = DVec3::new(lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z));
         let far = DVec3::new(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z));
         let (i, entry, before) = greatest(near);
-        let (j, exit, after) = greatest(-far);
-        let (exit, after) = (-exit, -after);
-        let slack = greater(self.error.x, greater(self.error.y, self.error.z)) + LEAST_CERTAIN;
-        let doubt = |x: f64, y: f64| slack + slack + self.relative * (x.abs() + y.abs());
+        // Products instead of `t - 4 u |t|`: an infinite parameter stays infinite.
+        let low = |t: f64| lesser(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) - self.slack;
+        let high = |t: f64| greater(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) + self.slack;
+        let leave = lesser(far.x, lesser(far.y, far.z));
         if !self.sound {
             return Err(());
         }
-        if entry - exit > doubt(entry, exit) {
+        if low(entry) > high(leave) {
             return Ok(None);
         }
-        if !(exit - entry > doubt(entry, exit)) {
+        if !(high(entry) < low(leave)) {
             return Err(());
         }
-        // Which face it is has to be certain as well as on which side of the ends of the interval it lies.
-        let beyond = |t: f64, end: f64| t - end > slack + self.relative * t.abs();
-        let short = |t: f64, end: f64| end - t > slack + self.relative * t.abs();
-        if beyond(entry, within.min) && short(entry, within.max) && entry - before > doubt(entry, before) {
-            return Ok(within.admit(entry, 2 * i as u32 + !forward(i) as u32, 0));
+        // Which face it is has to be certain, and on which side of the ends of the interval it lies. An end that
+        // equals a parameter was made from that hit, and excludes it.
+        if low(entry) > within.min {
+            if high(entry) < within.max && low(entry) > high(before) {
+                let back = !(self.backward[i] > 0.0);
+                return Ok(within.admit(entry, 2 * i as u32 + back as u32, 0));
+            }
+            return if low(entry) > within.max || entry == within.max { Ok(None) } else { Err(()) };
         }
-        if beyond(entry, within.max) || short(exit, within.min) {
+        if high(leave) < within.min || leave == within.min || !(within.min < within.max) {
             return Ok(None);
         }
-        if short(entry, within.min) && beyond(exit, within.min) {
-            if beyond(exit, within.max) {
+        if (high(entry) < within.min || entry == within.min) && low(leave) > within.min {
+            if low(leave) > within.max || leave == within.max {
                 return Ok(None);
             }
-            if short(exit, within.max) && after - exit > doubt(exit, after) {
-                return Ok(within.admit(exit, 2 * j as u32 + forward(j) as u32, 1));
+            let (j, exit, after) = greatest(-far);
+            if high(leave) < within.max && low(-after) > high(-exit) {
+                let forward = self.backward[j] > 0.0;
+                return Ok(within.admit(-exit, 2 * j as u32 + forward as u32, 1));
             }
         }
         Err(())
@@ -250,7 +261,12 @@ impl Task for Span<'_> {
             };
             let sign = along.high;
             if sign == 0.0 {
-                if low.high > 0.0 || high.high < 0.0 {
+                // Along the world's axes without the scale, in which a small difference may vanish.
+                let beside = match turn {
+                    None => o[i] < min[i] || o[i] > max[i],
+                    Some(_) => low.high > 0.0 || high.high < 0.0,
+                };
+                if beside {
                     return None;
                 }
                 continue;
@@ -276,7 +292,7 @@ impl Task for Span<'_> {
             _ => return None,
         }
         let crossing = |f: Fraction| Crossing {
-            t: flat::scaled(f.numerator.div::<P>(f.denominator).to_f64(), power - direction_power),
+            t: times_power(f.numerator.div::<P>(f.denominator).to_f64(), power - direction_power),
             face: f.face,
         };
         Some([crossing(near), crossing(far)])
@@ -365,9 +381,14 @@ impl Primitive for Cuboid {
         if self.turn.is_none() {
             at.local[k] = Double::ZERO;
         }
-        let point = at.point(anchor);
+        let mut point = at.point(anchor);
         let across = if upper { size[k] } else { 0.0 };
-        let local = if self.turn.is_none() { at.local().with_axis(k, across) } else { at.local() };
+        let mut local = at.local();
+        if self.turn.is_none() {
+            // The hit is on the face; what double-double leaves beside it is noise.
+            local = local.with_axis(k, across).clamp(DVec3::ZERO, size);
+            point = point.clamp(self.min, self.max);
+        }
         let object_point = match &self.turn {
             None => local,
             Some(turn) => run(Along { at: &at, axes: &turn.axes }).with_axis(k, across),
@@ -417,7 +438,8 @@ impl Primitive for Cuboid {
         }
         let (t, face) = exit.unwrap_or((0.0, from.part));
         // The start may lie beyond the exit by rounding: the exit is then where the ray starts.
-        let t = if t > 0.0 { t } else { within.min.max(0.0).next_up() };
+        let least = if within.min < 0.0 { 0.0 } else { f64::from_bits(1) };
+        let t = if t > 0.0 { t } else { least };
         within.admit(t, face, 1)
     }
 
@@ -448,9 +470,9 @@ trait WithAxis {
 }
 
 impl WithAxis for DVec3 {
-    fn with_axis(mut self, k: usize, value: f64) -> Self {
-        self[k] = value;
-        self
+    fn with_axis(self, k: usize, value: f64) -> Self {
+        let keep = self.to_array();
+        DVec3::from_array([0, 1, 2].map(|i| if i == k { value } else { keep[i] }))
     }
 }
 

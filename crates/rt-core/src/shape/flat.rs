@@ -9,6 +9,7 @@ use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent};
+use crate::scaled::{largest, times_power};
 use crate::{Aabb, Error, Ray};
 use glam::{DVec2, DVec3};
 
@@ -19,19 +20,12 @@ pub(super) const U: f64 = exp2i(-53);
 /// covers more than a hundred of them.
 pub(super) const LEAST_CERTAIN: f64 = exp2i(-1022) * exp2i(-38);
 
-/// A denominator below this may owe its relative error to underflow (2^-1075 against 2^-53 of the value).
-pub(super) const LEAST_DENOMINATOR: f64 = exp2i(-1000);
-
-/// Coordinates and sizes up to here keep every square and product of the hot paths finite.
-const LARGEST: f64 = exp2i(508);
-
-/// The point itself when it is finite and within range.
-pub(super) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, Error> {
-    if !value.is_finite() {
-        return Err(Error::NotFinite { what, value });
-    }
-    let largest = value.abs().max_element();
-    if largest > LARGEST { Err(Error::OutOfRange { what, value: largest }) } else { Ok(value) }
+/// Whether at least 29 bits of a denominator are certain, given the sum of its terms' sizes: it errs by less than 4 u
+/// of that, and by 2^-1073 for products that underflow. Rays closer to the plane than 2^-20 are met exactly: for them
+/// the rounded parameter would be of no use to tell which of two surfaces is nearer.
+#[inline(always)]
+pub(super) fn crosses(denominator: f64, sizes: f64) -> bool {
+    denominator.abs() > exp2i(-20) * sizes + exp2i(-1000)
 }
 
 /// The vector itself when it is finite and has a length.
@@ -40,14 +34,6 @@ pub(super) fn checked_direction(what: &'static str, value: DVec3) -> Result<DVec
         return Err(Error::NotFinite { what, value });
     }
     if value == DVec3::ZERO { Err(Error::ZeroLength { what, value }) } else { Ok(value) }
-}
-
-/// `2^power` for scaling, split in two so that neither factor over- or underflows.
-#[inline(always)]
-pub(super) fn scaled(x: f64, power: i32) -> f64 {
-    let half = (power / 2).clamp(-1022, 1023);
-    let rest = (power - half).clamp(-1022, 1023);
-    x * exp2i(half) * exp2i(rest)
 }
 
 /// The vector times `2^-power`, with the largest component in `[1, 2)`, and that power; zero stays as it is.
@@ -60,7 +46,7 @@ pub(super) fn prescaled(v: DVec3) -> (DVec3, i32) {
 /// The power of two that [`prescaled`] divides by.
 #[inline(always)]
 pub(super) fn power_of(v: DVec3) -> i32 {
-    let largest = v.abs().max_element();
+    let largest = largest(v);
     if largest == 0.0 { 0 } else { exponent(largest).clamp(-1022, 1022) }
 }
 
@@ -225,12 +211,43 @@ impl<F: Fn() -> [Expansion; 3]> Task for Meet<'_, F> {
             return None;
         }
         let t = numerator.div::<P>(denominator);
-        let local = [t.scale::<P>(d[0]) - w[0], t.scale::<P>(d[1]) - w[1], t.scale::<P>(d[2]) - w[2]];
+        let mut local = [t.scale::<P>(d[0]) - w[0], t.scale::<P>(d[1]) - w[1], t.scale::<P>(d[2]) - w[2]];
         // The components of w are at most 2 in this unit, those of the direction too. The quotient errs by 2^-70 at
         // worst, the product and the difference by 2^-103 of their operands.
-        let error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
-        Some(Meeting { t: scaled(t.to_f64(), power - direction_power), local, power, error })
+        let mut error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
+        let largest = local.iter().fold(0.0_f64, |m, x| if x.high.abs() > m { x.high.abs() } else { m });
+        // A place near the anchor met from afar: without the difference of large numbers.
+        if self.plane.offset == 0.0 && largest < exp2i(-40) * t.high.abs() {
+            local = near_anchor::<P>(n, &w, d, denominator);
+            error = exp2i(-99) * largest;
+        }
+        Some(Meeting { t: times_power(t.to_f64(), power - direction_power), local, power, error })
     }
+}
+
+/// `t d - w = n x (d x w) / (n . d)`, with an exact inner product: for places much nearer to the anchor than the
+/// origin is. Errs by 2^-100 of itself over the cosine between normal and direction.
+#[cold]
+#[inline(never)]
+fn near_anchor<P: Product>(
+    n: &[Double; 3],
+    w: &[Double; 3],
+    d: [f64; 3],
+    denominator: Double,
+) -> [Double; 3] {
+    let m = cross::<P>(&d.map(Double::from), w).map(|m| m.to_double());
+    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (n[j].mul::<P>(m[k]) - n[k].mul::<P>(m[j])).div::<P>(denominator))
+}
+
+/// The exact cross product.
+#[inline(always)]
+pub(super) fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| {
+        let mut sum = Expansion::ZERO;
+        sum.add_double_product::<P>(a[j], b[k]);
+        sum.add_double_product::<P>(-a[k], b[j]);
+        sum
+    })
 }
 
 /// `a - b` as exact sums of two `f64`, in units of the returned power of two, in which the largest is in `[1, 2)`.
@@ -275,14 +292,6 @@ pub(super) fn settle(at: &mut Meeting, normal: DVec3) {
     if (0..3).all(|i| i == k || n[i] == 0.0) {
         at.local[k] = Double::ZERO;
     }
-}
-
-/// A size that is positive and within range.
-pub(super) fn checked_length(what: &'static str, value: f64) -> Result<f64, Error> {
-    if !(value > 0.0 && value.is_finite()) {
-        return Err(Error::NotPositive { what, value });
-    }
-    if value < 1.0 / LARGEST || value > LARGEST { Err(Error::OutOfRange { what, value }) } else { Ok(value) }
 }
 
 /// The box from `anchor + least` to `anchor + greatest`, each end rounded away from the box.

@@ -6,11 +6,12 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
+use crate::scaled::{checked_point, largest, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
 use glam::{DVec2, DVec3};
@@ -28,7 +29,8 @@ pub struct Triangle {
     normal: DVec3,
     /// What rounding to `normal` left, so that both together are within 2^-104.
     normal_rest: DVec3,
-    /// The power of two between `normal` and the product of the edges.
+    /// The power of two between `normal` and the product of the edges; NaN where that is too large, so that no
+    /// comparison in `f64` is certain.
     area_scale: f64,
     /// The largest coordinate of the edges, in size.
     reach: f64,
@@ -43,25 +45,22 @@ impl Triangle {
     /// [`Error::NotFinite`], [`Error::OutOfRange`] for coordinates beyond 1e150, [`Error::Degenerate`] when the corners
     /// lie exactly on a line.
     pub fn new(a: impl Into<DVec3>, b: impl Into<DVec3>, c: impl Into<DVec3>) -> Result<Self, Error> {
-        let a = flat::checked_point("triangle corner", a.into())?;
-        let b = flat::checked_point("triangle corner", b.into())?;
-        let c = flat::checked_point("triangle corner", c.into())?;
+        let a = checked_point("triangle corner", a.into())?;
+        let b = checked_point("triangle corner", b.into())?;
+        let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
-        let (mut exact, power) = exact_normal(a, b, c);
-        let rough = DVec3::from_array([0, 1, 2].map(|i| exact[i].to_double().high));
-        if rough == DVec3::ZERO {
+        let (exact, area_power) = exact_normal(a, b, c);
+        let normal = exact.map(|n| n.to_double());
+        if normal.iter().all(|n| n.high == 0.0) {
             return Err(Error::Degenerate { vertices: [a, b, c] });
         }
-        let normal_power = flat::power_of(rough);
-        exact.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
-        let normal = exact.map(|n| n.to_double());
         Ok(Triangle {
             a,
             b,
             c,
             normal: DVec3::from_array(normal.map(|n| n.high)),
             normal_rest: DVec3::from_array(normal.map(|n| n.low)),
-            area_scale: flat::scaled(1.0, 2 * power + normal_power),
+            area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
             reach,
             unit_normal: flat::unit(normal),
             smooth: None,
@@ -122,10 +121,12 @@ impl Triangle {
         Some(at)
     }
 
+    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        if !ray.is_valid() {
+    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
+        if !ray.is_valid() || rough == within.min || rough == within.max {
             return None;
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
@@ -137,14 +138,15 @@ impl Triangle {
     }
 }
 
-/// `(b - a) x (c - a)` without rounding, the edges in units of `2^power`.
+/// `(b - a) x (c - a)` without rounding, in units of the returned power of two, in which the largest component is in
+/// `[1, 2)`.
 fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
     struct Cross([Double; 3], [Double; 3]);
     impl Task for Cross {
         type Output = [Expansion; 3];
         #[inline(always)]
         fn run<P: Product>(self) -> [Expansion; 3] {
-            cross::<P>(&self.0, &self.1)
+            flat::cross::<P>(&self.0, &self.1)
         }
     }
     let power = flat::power_of((b - a).abs().max((c - a).abs()));
@@ -152,18 +154,12 @@ fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
         [Double::difference(to.x, a.x), Double::difference(to.y, a.y), Double::difference(to.z, a.z)]
             .map(|x| x.scale_exact(exp2i(-power)))
     };
-    (run(Cross(edge(b), edge(c))), power)
-}
-
-/// The exact cross product.
-#[inline(always)]
-fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| {
-        let mut sum = Expansion::ZERO;
-        sum.add_double_product::<P>(a[j], b[k]);
-        sum.add_double_product::<P>(-a[k], b[j]);
-        sum
-    })
+    let mut normal = run(Cross(edge(b), edge(c)));
+    let rough =
+        DVec3::new(normal[0].to_double().high, normal[1].to_double().high, normal[2].to_double().high);
+    let normal_power = flat::power_of(rough);
+    normal.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
+    (normal, 2 * power + normal_power)
 }
 
 /// The exact signs of the edge functions opposite the corners.
@@ -184,7 +180,7 @@ impl Task for EdgeSigns<'_> {
         let scale = exp2i(-flat::power_of(DVec3::splat(largest)));
         let [a, b, c] = from_origin.map(|p| p.map(|x| x.scale_exact(scale)));
         [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| {
-            let m = cross::<P>(p, q);
+            let m = flat::cross::<P>(p, q);
             let mut sum = Expansion::ZERO;
             for (m, d) in m.iter().zip(d.to_array()) {
                 sum.add_expansion_product::<P>(m, Double::from(d));
@@ -217,7 +213,7 @@ impl Task for Weights<'_> {
         let shift = self.at.power - power;
         let l = |i: usize| {
             let x: Double = self.at.local[i];
-            Double { high: flat::scaled(x.high, shift), low: flat::scaled(x.low, shift) }
+            Double { high: times_power(x.high, shift), low: times_power(x.low, shift) }
         };
         let across = |p: [Double; 2], q: [Double; 2]| p[0].mul::<P>(q[1]) - p[1].mul::<P>(q[0]);
         let (e1, e2, l) = ([e1(i), e1(j)], [e2(i), e2(j)], [l(i), l(j)]);
@@ -252,23 +248,24 @@ impl Primitive for Triangle {
         if certain && least < -doubt && most > doubt {
             return None;
         }
+        let n = self.normal * s;
+        let t = (n.x + n.y + n.z) / denominator;
         if certain && (least > doubt || most < -doubt) {
-            let n = self.normal * s;
-            let t = (n.x + n.y + n.z) / denominator;
             // As for the plane; the rounded normal adds u to both sums.
             let (n, q) = (n.abs(), (self.normal * d).abs());
-            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * (q.x + q.y + q.z));
+            let sizes = q.x + q.y + q.z;
+            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
             let from_min = (t - within.min).abs() * denominator.abs();
             let from_max = (t - within.max).abs() * denominator.abs();
             if from_min > slack
                 && from_max > slack
                 && slack > LEAST_CERTAIN
-                && denominator.abs() > LEAST_DENOMINATOR
+                && flat::crosses(denominator, sizes)
             {
                 return within.admit(t, 0, 0);
             }
         }
-        self.hit_exactly(ray, within)
+        self.hit_exactly(ray, within, t)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -282,7 +279,9 @@ impl Primitive for Triangle {
             // Only for a ray that this triangle gave no hit for.
             return Surface::new(hit.t(), self.a, DVec3::ZERO, self.unit_normal, self.reach);
         };
-        let point = at.point(self.a);
+        // The hit is inside; what double-double leaves beside the corners is noise.
+        let [a, b, c] = self.corners();
+        let point = at.point(a).clamp(a.min(b).min(c), a.max(b).max(c));
         let uv = run(Weights { at: &at, triangle: self });
         let surface =
             Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point)).with_uv(uv);
@@ -322,10 +321,4 @@ fn lesser(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn largest(v: DVec3) -> f64 {
-    let v = v.abs();
-    greater(v.x, greater(v.y, v.z))
 }

@@ -1,40 +1,95 @@
 //! The full record of a hit: parameter, point, normal and angles from the refined crossing.
 
 use super::Torus;
-use super::approach::{Approach, Vector, dot_double, scaled};
-use super::isolate::{Crossings, Quartic};
+use super::exact::{self, Crossings};
+use super::line::Line;
 use crate::double::Double;
+use crate::frame::turns;
 use crate::kernel::{Product, Task};
-use crate::{Hit, Ray, Surface};
-use core::f64::consts::TAU;
+use crate::math::{exp2i, sqrt};
+use crate::scaled::{ScaledRay, times_power};
+use crate::{Hit, Surface};
 use glam::{DVec2, DVec3};
 
-/// See [`Primitive::surface`](crate::Primitive::surface).
-pub(super) struct Record<'a> {
+/// See [`Primitive::surface`](crate::Primitive::surface). `None` where only the whole search can tell which crossing
+/// is meant.
+pub(super) struct Near<'a> {
     pub torus: &'a Torus,
-    pub ray: &'a Ray,
+    pub ray: &'a ScaledRay,
     pub hit: Hit,
 }
 
-impl Task for Record<'_> {
+/// The same with all crossings separated anew.
+pub(super) struct Thorough<'a>(pub Near<'a>);
+
+/// `hit` gives the distance along the ray to this part of the torus' size, or exactly (the module `filter`).
+pub(super) const HIT_ERROR: f64 = exp2i(-38);
+
+impl Task for Near<'_> {
+    type Output = Option<Surface>;
+
+    #[inline(always)]
+    fn run<P: Product>(self) -> Option<Surface> {
+        let line = Line::of::<P>(self.torus, self.ray);
+        let t = Double::from(times_power(self.hit.t(), -self.ray.power));
+        let mut x = line.distance::<P>(t);
+        if x.high.abs() > 2.0 * self.torus.reach || x.high.is_nan() {
+            return None;
+        }
+        let (value, slope) = line.value::<P>(x);
+        // A crossing with an even index leads inward: f falls.
+        if (slope.high < 0.0) != self.hit.root().is_multiple_of(2) {
+            return None;
+        }
+        // Smale's alpha theorem (Blum, Cucker, Shub, Smale, Complexity and Real Computation, 1998, chapter 8): with
+        // gamma the greatest of |f^(j) / (j! f')|^(1 / (j - 1)) at x, Newton's method finds a zero within twice its first
+        // step if that is less than 0.15 / gamma, and two zeros within 0.05 / gamma of x would be nearer to each other
+        // than the 0.16 / gamma that zeros there keep apart. The hit is within HIT_ERROR and the rounding of t of its
+        // crossing, so that is the zero found. Each power of gamma times the reach is compared with that of 0.05.
+        let around = x.high.abs() * 4.0 * f64::EPSILON + (t.high * line.length.high).abs() * f64::EPSILON;
+        let reach = 2.0 * (value.high / (4.0 * slope.high)).abs() + HIT_ERROR + around;
+        let derivative = 4.0 * slope.high.abs();
+        let second = (4.0 * line.bend(x.high)).abs() * reach;
+        let third = (4.0 * x.high).abs() * reach * reach;
+        if !(second < 0.05 * derivative
+            && third < 0.0025 * derivative
+            && reach * reach * reach < 0.000_125 * derivative)
+        {
+            return None;
+        }
+        let mut step = value.div::<P>(slope).scale_exact(0.25);
+        x = x - step;
+        let mut slope = slope.high;
+        // Each step more than doubles the correct bits, of which there are 30 or more at first.
+        for _ in 0..3 {
+            if exact::finished(&line, x, slope, step.high) {
+                break;
+            }
+            let (value, steepness) = line.value::<P>(x);
+            step = value.div::<P>(steepness).scale_exact(0.25);
+            slope = steepness.high;
+            x = x - step;
+        }
+        Some(self.torus.record::<P>(self.ray, &line, x))
+    }
+}
+
+impl Task for Thorough<'_> {
     type Output = Surface;
 
     #[inline(always)]
     fn run<P: Product>(self) -> Surface {
-        let Some(line) = Approach::new::<P>(self.torus, self.ray) else {
-            return self.torus.no_surface(self.ray, self.hit);
-        };
-        let crossings = Quartic::new::<P>(self.torus, &line).crossings::<P>();
-        let x = match chosen::<P>(&crossings, &line, self.hit) {
+        let Thorough(Near { torus, ray, hit }) = self;
+        let line = Line::of::<P>(torus, ray);
+        let crossings = exact::crossings::<P>(torus, &line);
+        let t = Double::from(times_power(hit.t(), -ray.power));
+        let x = match chosen::<P>(&crossings, &line, t.high, hit.root()) {
             Some(x) => x,
             // A ray that left this torus along a tangent may pass it by less than the radius by which its origin
             // was moved: the point at the parameter is the best there is.
-            None => {
-                let s = Double::from(scaled(self.hit.t(), -line.exponent)) - line.parameter;
-                s.mul::<P>(line.length)
-            }
+            None => line.distance::<P>(t),
         };
-        self.torus.record::<P>(line.t::<P>(x), &line.at::<P>(x))
+        torus.record::<P>(ray, &line, x)
     }
 }
 
@@ -42,14 +97,14 @@ impl Task for Record<'_> {
 /// outward) is nearer to the hit's parameter. Only rays that leave this torus make a difference: they were counted
 /// along the line from the departure's point, not along the line of the moved ray.
 #[inline(always)]
-fn chosen<P: Product>(crossings: &Crossings, line: &Approach, hit: Hit) -> Option<Double> {
+fn chosen<P: Product>(crossings: &Crossings, line: &Line, t: f64, root: u32) -> Option<Double> {
     let mut best: Option<(f64, Double)> = None;
     for (index, x) in crossings.as_slice().iter().enumerate() {
-        if index as u32 % 2 != hit.root() % 2 {
+        if index as u32 % 2 != root % 2 {
             continue;
         }
-        let miss = (line.t::<P>(*x) - hit.t()).abs();
-        if best.is_none_or(|(least, _)| miss < least || (miss == least && index as u32 == hit.root())) {
+        let miss = (line.parameter_at::<P>(*x).high - t).abs();
+        if best.is_none_or(|(least, _)| miss < least || (miss == least && index as u32 == root)) {
             best = Some((miss, *x));
         }
     }
@@ -57,83 +112,56 @@ fn chosen<P: Product>(crossings: &Crossings, line: &Approach, hit: Hit) -> Optio
 }
 
 impl Torus {
-    /// The record of the point `local` (relative to the centre, at the torus' scale) at the parameter `t`.
+    /// The record of the point at distance `x` from the closest approach.
     #[inline(always)]
-    fn record<P: Product>(&self, t: f64, local: &Vector) -> Surface {
-        let own = [
-            dot_double::<P>(local, &self.frame[0]),
-            dot_double::<P>(local, &self.frame[1]),
-            dot_double::<P>(local, &self.frame[2]),
-        ];
-        let rho = (own[0].square::<P>() + own[1].square::<P>()).sqrt::<P>();
-        let (major, minor) = (Double::from(self.major_scaled), Double::from(self.minor_scaled));
-        // The signed squared distance from the surface seen from the near and from the far side of the generating
-        // circle: on the inner sheet of a spindle torus the second vanishes.
-        let height = own[2].square::<P>() - minor.square::<P>();
-        let near = (rho - major).square::<P>() + height;
-        let far = (rho + major).square::<P>() + height;
+    fn record<P: Product>(&self, ray: &ScaledRay, line: &Line, x: Double) -> Surface {
+        let local = line.at::<P>(x);
+        let [first, second, axis] = self.frame;
+        let (x_own, y_own, z) = (local.dot::<P>(first), local.dot::<P>(second), local.dot::<P>(axis));
+        let rho = (x_own.square::<P>() + y_own.square::<P>()).sqrt::<P>();
+        let minor = Double::from(self.minor_scaled);
+        // How far the point is from the surface as seen from the near and from the far side of the generating
+        // circle, in squares: on the inner sheet of a spindle the second vanishes.
+        let height = z.square::<P>() - minor.square::<P>();
+        let near = (rho - self.major_scaled).square::<P>() + height;
+        let far = (rho + self.major_scaled).square::<P>() + height;
         let inner = far.high.abs() < near.high.abs();
-        let circle = if inner { -major } else { major };
-        // The normal lies in the plane of the point and the axis: `out` along the radius, `up` along the axis.
-        let out = rho - circle;
-        let (radial, up) = (out.div::<P>(minor), own[2].div::<P>(minor));
+        // From the circle to the point: `out` along the radius, `z` along the axis.
+        let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
         let normal = if rho.high > 0.0 {
-            let factor = radial.div::<P>(rho);
-            let component = |i: usize| {
-                let axial = own[2].mul::<P>(self.frame[2][i]);
-                ((local[i] - axial).mul::<P>(factor) + up.mul::<P>(self.frame[2][i])).to_f64()
-            };
-            DVec3::new(component(0), component(1), component(2))
+            let radial = out.div::<P>(rho.mul::<P>(minor));
+            let axial = z.div::<P>(minor);
+            ((local - axis.mul::<P>(z)).mul::<P>(radial) + axis.mul::<P>(axial)).high()
         } else {
-            // On the axis, where sheets meet in a cone point: the axis itself.
-            let sign = if own[2].high < 0.0 { -1.0 } else { 1.0 };
-            rounded(&self.frame[2]) * sign
+            // On the axis, where the sheets meet in a point.
+            axis.high() * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
-        let back = |v: &Vector| {
-            v.map(|c| Double { high: scaled(c.high, self.scale), low: scaled(c.low, self.scale) })
+        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own.high, y_own.high, z.high));
+        let world = local.scale_exact(unit);
+        let point = world.plus_f64(self.center);
+        // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
+        // towards the axis.
+        let uv = if inner {
+            DVec2::new(turns(-own.x, -own.y), turns(-out.high, own.z))
+        } else {
+            DVec2::new(turns(own.x, own.y), turns(out.high, own.z))
         };
-        let world = back(local);
-        let point = DVec3::new(
-            (world[0] + self.center.x).to_f64(),
-            (world[1] + self.center.y).to_f64(),
-            (world[2] + self.center.z).to_f64(),
-        );
-        let turn = if inner { 0.5 } else { 0.0 };
-        let (across, height) =
-            if inner { (-out.to_f64(), own[2].to_f64()) } else { (out.to_f64(), own[2].to_f64()) };
-        let uv = DVec2::new(
-            turns(libm::atan2(own[1].to_f64(), own[0].to_f64()) / TAU + turn),
-            turns(libm::atan2(height, across) / TAU),
-        );
-        Surface::new(t, point, rounded(&world), normal, self.error_radius(point))
-            .with_uv(uv)
-            .with_object_point(rounded(&back(&own)))
+        let t = ray.unscale(line.parameter_at::<P>(x)).to_f64();
+        let uncertainty = exact::uncertainty(self, line, x.high);
+        let error = self.error_radius(point, uncertainty, line.value::<P>(x).1.high);
+        Surface::new(t, point, world.high(), normal, error).with_uv(uv).with_object_point(own * unit)
     }
 
-    /// How far `point` can be from the true crossing: each coordinate is the rounded sum of the centre's and a
-    /// double-double local one, whose own error, some 2^-98 of the size, vanishes beside half a unit of the size
-    /// (it is allowed 2^-53 of it). The sum of three half units bounds the length of the difference.
-    fn error_radius(&self, point: DVec3) -> f64 {
-        const HALF_UNIT: f64 = 0.5 * f64::EPSILON;
-        let p = point.abs();
-        HALF_UNIT * (p.x + p.y + p.z + (self.major + self.minor))
+    /// How far `point` can be from the true crossing. The rounding errs by at most 2^-53 of each coordinate, hence
+    /// by 2^-53 of the length (and 2^-1074 where that is subnormal). The place on the ray errs by the error of `f`,
+    /// its [uncertainty](exact::uncertainty), over its derivative, four times `slope`; where that is small, near a
+    /// double crossing, by the order of the uncertainty's root instead.
+    #[inline(always)]
+    fn error_radius(&self, point: DVec3, uncertainty: f64, slope: f64) -> f64 {
+        // sqrt(3) < 1.75, and a few units of slack.
+        let rounding = crate::scaled::largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
+        let along = uncertainty / (4.0 * slope.abs());
+        let most = sqrt(uncertainty);
+        rounding + exp2i(self.scale) * if along < most { along } else { most }
     }
-
-    /// What a ray gets that cannot have hit: its own point, so that nothing downstream panics.
-    #[cold]
-    fn no_surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let point = ray.at(hit.t());
-        Surface::new(hit.t(), point, point - self.center, rounded(&self.frame[2]), self.error_radius(point))
-    }
-}
-
-/// An angle in turns, brought into `[0, 1)`.
-fn turns(x: f64) -> f64 {
-    let x = if x < 0.0 { x + 1.0 } else { x };
-    if x >= 1.0 { 0.0 } else { x }
-}
-
-#[inline(always)]
-fn rounded(v: &Vector) -> DVec3 {
-    DVec3::new(v[0].to_f64(), v[1].to_f64(), v[2].to_f64())
 }

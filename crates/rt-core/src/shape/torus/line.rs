@@ -1,0 +1,129 @@
+//! A ray seen from the torus: its closest approach to the centre, in double-double, at the torus' own scale.
+//!
+//! About the closest approach `m` a ray is `m + x u` with `|u| = 1` and `m . u = 0`, and the torus is the zero set of
+//!
+//! ```text
+//! f(x) = k^2 - 4 R^2 (r - z) (r + z),    k = |m|^2 - R^2 - r^2 + x^2,    z = m . a + x (u . a)
+//! f(x) = x^4 + 2 P x^2 + 4 Q x + const,  P = |m|^2 - R^2 - r^2 + 2 R^2 (u . a)^2,    Q = 2 R^2 (m . a) (u . a)
+//! ```
+//!
+//! a quartic without a cubic term. Evaluated as the first line stands it loses nothing on a thin tube: there `k` is
+//! of the order of `R r` and `z` of the order of `r`, so that a rounding of either moves the zero by a rounding of
+//! `R` and not by `R / r` of them.
+
+use super::Torus;
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::kernel::Product;
+use crate::scaled::{ScaledRay, largest};
+use glam::DVec3;
+
+/// A line about its closest approach to the torus' centre, in double-double. Lengths are in units of the torus.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// The direction as given, its largest component in `[1, 2)`.
+    pub direction: DVec3,
+    /// The length of `direction`.
+    pub length: Double,
+    /// The parameter of the closest approach, counted in `direction`s from the ray's origin.
+    pub parameter: Double,
+    /// The closest approach `m`.
+    pub point: DoubleVector,
+    /// `|m|^2 - R^2 - r^2`.
+    pub k: Double,
+    /// `m . a`.
+    pub z: Double,
+    /// `u . a`.
+    pub slope: Double,
+    /// `2 R^2`.
+    twice: Double,
+    minor: f64,
+    /// `P`, the coefficient of the cubic `x^3 + P x + Q` whose zeros are the extrema of `f`.
+    pub p: Double,
+    /// `Q`, its constant.
+    pub q: Double,
+}
+
+impl Line {
+    /// The line through `origin` (relative to the centre) along `direction`, both at the torus' scale.
+    #[inline(always)]
+    pub fn new<P: Product>(torus: &Torus, origin: DoubleVector, direction: DVec3) -> Line {
+        let d = direction;
+        let square = DoubleVector::from(d).dot_f64::<P>(d);
+        // First the whole way with a rounded factor but an exact sum, then what little is left: nothing of the
+        // point's digits is lost, however far away the ray starts.
+        let mut point = origin;
+        let mut parameter = Double::ZERO;
+        let steps = if largest(origin.high()) > FAR { 3 } else { 1 };
+        for _ in 0..steps {
+            let step = -(point.high().dot(d) / square.high);
+            point = point + DoubleVector::product::<P>(d, step);
+            parameter = parameter + step;
+        }
+        let rest = -point.dot_f64::<P>(d).div::<P>(square);
+        point = point + DoubleVector::from(d).mul::<P>(rest);
+        let length = square.sqrt::<P>();
+        let axis = torus.frame[2];
+        let k = point.length_squared::<P>() - torus.squares;
+        let z = point.dot::<P>(axis);
+        let slope = axis.dot_f64::<P>(d).div::<P>(length);
+        let twice = torus.twice;
+        Line {
+            direction,
+            length,
+            parameter: parameter + rest,
+            point,
+            k,
+            z,
+            slope,
+            twice,
+            minor: torus.minor_scaled,
+            p: k + twice.mul::<P>(slope.square::<P>()),
+            q: twice.mul::<P>(z.mul::<P>(slope)),
+        }
+    }
+
+    /// The line of a ray.
+    #[inline(always)]
+    pub fn of<P: Product>(torus: &Torus, ray: &ScaledRay) -> Line {
+        Line::new::<P>(torus, ray.relative, ray.direction)
+    }
+
+    /// `f(x)` and a quarter of its derivative.
+    #[inline(always)]
+    pub fn value<P: Product>(&self, x: Double) -> (Double, Double) {
+        let k = self.k + x.square::<P>();
+        let z = self.z + x.mul::<P>(self.slope);
+        let gap = (-z + self.minor).mul::<P>(z + self.minor);
+        let value = k.square::<P>() - self.twice.mul::<P>(gap).scale_exact(2.0);
+        let slope = k.mul::<P>(x) + self.twice.mul::<P>(z.mul::<P>(self.slope));
+        (value, slope)
+    }
+
+    /// An eighth of the second derivative, `(3 x^2 + P) / 2`, rounded.
+    #[inline(always)]
+    pub fn bend(&self, x: f64) -> f64 {
+        0.5 * (3.0 * x * x + self.p.high)
+    }
+
+    /// The parameter at distance `x` from the closest approach.
+    #[inline(always)]
+    pub fn parameter_at<P: Product>(&self, x: Double) -> Double {
+        self.parameter + x.div::<P>(self.length)
+    }
+
+    /// The distance from the closest approach of the point at this parameter.
+    #[inline(always)]
+    pub fn distance<P: Product>(&self, parameter: Double) -> Double {
+        (parameter - self.parameter).mul::<P>(self.length)
+    }
+
+    /// The point at distance `x` from the closest approach, relative to the centre.
+    #[inline(always)]
+    pub fn at<P: Product>(&self, x: Double) -> DoubleVector {
+        self.point + DoubleVector::from(self.direction).mul::<P>(x.div::<P>(self.length))
+    }
+}
+
+/// From beyond this many sizes one step leaves more than 2^-10 sizes to go, and its square would show.
+const FAR: f64 = crate::math::exp2i(40);
