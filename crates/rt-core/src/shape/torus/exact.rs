@@ -56,6 +56,11 @@ const ROUNDING: f64 = exp2i(-99);
 pub(super) fn uncertainty(torus: &Torus, line: &Line, x: f64) -> f64 {
     let square = 4.0 * torus.major_scaled * torus.major_scaled;
     let k = line.k.high + x * x;
+    if let Some(core) = &line.core
+        && k < -0.25 * square
+    {
+        return ROUNDING * core.magnitude(x, 0.5 * square);
+    }
     let z = line.z.high + x * line.slope.high;
     let gap = (torus.minor_scaled - z) * (torus.minor_scaled + z);
     let reach = torus.reach;
