@@ -44,10 +44,6 @@ pub(super) struct Line {
     /// `2 R^2`.
     twice: Double,
     minor: f64,
-    /// `P`, the coefficient of the cubic `x^3 + P x + Q` whose zeros are the extrema of `f`.
-    pub p: Double,
-    /// `Q`, its constant.
-    pub q: Double,
     /// What the second form needs, where the line comes so near to the centre that it is the better one.
     pub core: Option<Core>,
 }
@@ -127,14 +123,10 @@ impl Line {
         let z = point.dot::<P>(axis);
         let slope = axis.dot_f64::<P>(d).div::<P>(length);
         let twice = torus.twice;
-        let (mut p, mut q) = (k + twice.mul::<P>(slope.square::<P>()), twice.mul::<P>(z.mul::<P>(slope)));
         let mut core = None;
         // Somewhere on the line |K| < |k|.
         if k.high < -0.5 * twice.high {
-            let line = Core::new::<P>(torus, point, d, slope, length);
-            p = line.k - twice.mul::<P>(line.slope);
-            q = -twice.mul::<P>(line.product);
-            core = Some(line);
+            core = Some(Core::new::<P>(torus, point, d, slope, length));
         }
         Line {
             direction,
@@ -146,8 +138,6 @@ impl Line {
             slope,
             twice,
             minor: torus.minor_scaled,
-            p,
-            q,
             core,
         }
     }
@@ -178,10 +168,30 @@ impl Line {
         (value, slope)
     }
 
+    /// `P` and `Q` of the cubic `x^3 + P x + Q` whose zeros are the extrema of `f`.
+    #[inline(always)]
+    pub fn extremal<P: Product>(&self) -> (Double, Double) {
+        let twice = self.twice;
+        match &self.core {
+            Some(core) => (core.k - twice.mul::<P>(core.slope), -twice.mul::<P>(core.product)),
+            None => (
+                self.k + twice.mul::<P>(self.slope.square::<P>()),
+                twice.mul::<P>(self.z.mul::<P>(self.slope)),
+            ),
+        }
+    }
+
+    /// A quarter of the derivative, rounded.
+    #[inline(always)]
+    pub fn slope_at(&self, x: f64) -> f64 {
+        let z = self.z.high + x * self.slope.high;
+        (self.k.high + x * x) * x + self.twice.high * z * self.slope.high
+    }
+
     /// An eighth of the second derivative, `(3 x^2 + P) / 2`, rounded.
     #[inline(always)]
     pub fn bend(&self, x: f64) -> f64 {
-        0.5 * (3.0 * x * x + self.p.high)
+        0.5 * (3.0 * x * x + (self.k.high + self.twice.high * self.slope.high * self.slope.high))
     }
 
     /// The parameter at distance `x` from the closest approach.
@@ -196,10 +206,11 @@ impl Line {
         (parameter - self.parameter).mul::<P>(self.length)
     }
 
-    /// The point at distance `x` from the closest approach, relative to the centre.
+    /// The parameter at distance `x` from the closest approach, and the point there, relative to the centre.
     #[inline(always)]
-    pub fn at<P: Product>(&self, x: Double) -> DoubleVector {
-        self.point + DoubleVector::from(self.direction).mul::<P>(x.div::<P>(self.length))
+    pub fn at<P: Product>(&self, x: Double) -> (Double, DoubleVector) {
+        let further = x.div::<P>(self.length);
+        (self.parameter + further, self.point + DoubleVector::from(self.direction).mul::<P>(further))
     }
 }
 
