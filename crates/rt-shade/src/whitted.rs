@@ -157,10 +157,19 @@ impl<'s> Tracer<'s> {
         let scene = self.scene;
         let start = from.ray(DVec3::ZERO).0.origin;
         let ray = Ray::new(start, lamp - start);
+        let within = Interval::new(0.0, 1.0);
+        // Most lamps are in plain sight, and the question whether anything is there is cheap.
+        if !scene.geometry.occluded_leaving(&ray, within, from) {
+            return Some(Color::WHITE);
+        }
+        if scene.all_opaque {
+            self.stats.shadow_hits += 1;
+            return None;
+        }
         let filters = &mut self.filters;
         filters.clear();
         let mut blocked = false;
-        scene.geometry.crossings(&ray, Interval::new(0.0, 1.0), Some(from), &mut |found| {
+        scene.geometry.crossings(&ray, within, Some(from), &mut |found| {
             match scene.blocks[found.object as usize] {
                 Blocks::All => {
                     blocked = true;

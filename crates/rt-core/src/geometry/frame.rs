@@ -5,7 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
-use crate::kernel::{round_down, round_up};
+use crate::kernel::{at_least, round_down, round_up};
 use crate::math::{exp2i, exponent};
 use crate::{Aabb, Interval, Ray};
 use alloc::vec::Vec;
@@ -39,20 +39,20 @@ impl LocalRay {
     /// An upper bound of the parameter in kernel coordinates that belongs to `t`.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
-        round_up(t * self.factor + self.shift)
+        at_least(t * self.factor + self.shift)
     }
 }
 
 /// When the parameters of two objects are too close for their order to be certain.
 ///
-/// A raw `t` is promised within 4 u of the local scale: of the distance from the ray's origin to the far side of the
-/// shape, in lengths of the direction. For shapes inside the scene's box this is at most 4 (|o'| + 1), with |o'| the
-/// largest coordinate of the origin in kernel coordinates, as all coordinates there are at most 1: the distance is
-/// at most sqrt(3) (|o'| + 1), the size of the shape at most 2 sqrt(3). Two such errors are 32 u (|o'| + 1) =
-/// 2^-48 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
-/// scale is unknown here, and for shapes of the caller's own, which promise less. A window too wide costs time only:
-/// those inside are ordered by their refined parameters.
-#[derive(Clone, Copy, Debug)]
+/// A raw `t` is promised within 2^-36 of the local scale: of the distance from the ray's origin to the far side of the
+/// shape, in lengths of the direction (most are within 4 u of it; the worst are rays that graze a sphere just so
+/// that `f64` can still tell a hit). For shapes inside the scene's box this scale is at most 6 (|o'| + 1), with
+/// |o'| the largest coordinate of the origin in kernel coordinates, as all coordinates there are at most 1: the
+/// distance is at most sqrt(3) (|o'| + 1), the size of the shape at most 2 sqrt(3). Two such errors are less than
+/// 2^-32 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
+/// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
     absolute: f64,
 }
@@ -97,7 +97,7 @@ impl Frame {
     }
 
     /// The box in kernel coordinates, rounded outward. Half a unit for the subtraction is outweighed by a whole
-    /// unit; an underflow of the product is less than 2^-1074, and rays carry an error of 2^-98 at least.
+    /// unit; an underflow of the product is less than 2^-1074, and rays carry an error of 2^-97 at least.
     pub fn outward(&self, bounds: &Aabb) -> ([f32; 3], [f32; 3]) {
         let power = exp2i(-self.exponent);
         let (min, max) = (bounds.min - self.center, bounds.max - self.center);
@@ -130,7 +130,7 @@ impl Frame {
         if !(far < exp2i(60)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
-        let absolute = (far + 1.0) * exp2i(-46);
+        let absolute = (far + 1.0) * exp2i(-30);
         let window = Window { absolute: absolute * exp2i(-power) };
         // A raw `t` may exceed the interval's end by its error where the true one does not.
         let mut start = within.min * factor - absolute;
@@ -157,7 +157,7 @@ impl Frame {
         let run = direction * start;
         let local = LocalRay {
             origin: origin + run,
-            error: (origin.abs() + run.abs()) * (8.0 * U) + exp2i(-98),
+            error: (origin.abs() + run.abs()) * (8.0 * U) + exp2i(-97),
             direction,
             factor,
             shift: absolute - start,
@@ -168,7 +168,7 @@ impl Frame {
 
 impl LocalRay {
     /// Stands for a ray that kernel coordinates cannot hold: it meets every box.
-    const EVERYWHERE: LocalRay = LocalRay {
+    pub const EVERYWHERE: LocalRay = LocalRay {
         origin: DVec3::ZERO,
         error: DVec3::INFINITY,
         direction: DVec3::ONE,

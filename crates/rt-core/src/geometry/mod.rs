@@ -9,14 +9,17 @@
 //! roundings could have exchanged them, the order is that of their refined parameters ([`Surface::t`]); at equal ones,
 //! leaving a solid comes before entering one (`direction . normal > 0` first), then the order of adding.
 
+mod batch;
 mod builder;
 mod frame;
+mod packet;
 mod query;
 mod store;
+mod stream;
 mod traverse;
 mod tree;
 
-use crate::kernel::vectorize;
+use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
@@ -24,7 +27,7 @@ use core::ops::ControlFlow;
 use frame::{Frame, LocalRay};
 use query::{Any, Contest, Crossings, Nearest, Query, Ruling};
 use store::{Run, Store};
-use traverse::Descent;
+use traverse::traverse;
 use tree::{Child, Tree};
 
 /// A hit and the object it belongs to.
@@ -139,75 +142,22 @@ impl Geometry {
 
     /// The nearest hit inside the interval: see the [order of hits](self#order-of-hits).
     pub fn nearest(&self, ray: &Ray, within: Interval) -> Option<Found> {
-        self.nearest_from(ray, within, None)
+        vectorize(FindNearest { geometry: self, ray, within, from: None })
     }
 
     /// The nearest hit of a ray that leaves a surface: see [`Departure`].
     pub fn nearest_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Found> {
-        self.nearest_from(ray, within, Some(from))
-    }
-
-    #[inline(always)]
-    fn nearest_from(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
-        if !is_legal(ray, within) {
-            return None;
-        }
-        let (local, window) = self.frame.enter(ray, within);
-        let mut nearest = Nearest::new(within, window, from.map(|from| from.object));
-        if let Some((from, shape)) = self.departed(from)
-            && let Some(hit) = shape.hit_leaving(ray, within, from)
-        {
-            nearest.offer(from.object, hit);
-        }
-        let _ = self.ask(ray, local, &mut nearest);
-        match nearest.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(within) => self.decide(ray, within, local, from),
-        }
-    }
-
-    /// The first of the hits within an interval in which several objects are hit, too close to be sure.
-    #[cold]
-    fn decide(
-        &self,
-        ray: &Ray,
-        within: Interval,
-        local: Option<LocalRay>,
-        from: Option<&Departure>,
-    ) -> Option<Found> {
-        let mut contest = Contest::new(within, from.map(|from| from.object));
-        if let Some((from, shape)) = self.departed(from)
-            && let Some(hit) = shape.hit_leaving(ray, within, from)
-        {
-            contest.offer(ray, from.object, shape, hit);
-        }
-        let _ = self.ask(ray, local, &mut contest);
-        contest.winner()
+        vectorize(FindNearest { geometry: self, ray, within, from: Some(from) })
     }
 
     /// Whether anything lies inside the interval.
     pub fn occluded(&self, ray: &Ray, within: Interval) -> bool {
-        self.occluded_from(ray, within, None)
+        vectorize(FindAny { geometry: self, ray, within, from: None })
     }
 
     /// Whether anything lies inside the interval, for a ray that leaves a surface: see [`Departure`].
     pub fn occluded_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> bool {
-        self.occluded_from(ray, within, Some(from))
-    }
-
-    #[inline(always)]
-    fn occluded_from(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> bool {
-        if !is_legal(ray, within) {
-            return false;
-        }
-        if let Some((from, shape)) = self.departed(from)
-            && shape.hit_leaving(ray, within, from).is_some()
-        {
-            return true;
-        }
-        let mut any = Any::new(within, from.map(|from| from.object));
-        let _ = self.ask(ray, self.frame.enter(ray, within).0, &mut any);
-        any.found
+        vectorize(FindAny { geometry: self, ray, within, from: Some(from) })
     }
 
     /// All crossings inside the interval of all objects, in no particular order, but ascending for each object;
@@ -219,17 +169,7 @@ impl Geometry {
         from: Option<&Departure>,
         each: &mut dyn FnMut(Found) -> ControlFlow<()>,
     ) {
-        if !is_legal(ray, within) {
-            return;
-        }
-        if let Some((from, shape)) = self.departed(from) {
-            let flow =
-                query::report(from.object, each, |each| shape.crossings_leaving(ray, within, from, each));
-            if flow.is_break() {
-                return;
-            }
-        }
-        let _ = self.ask(ray, self.frame.enter(ray, within).0, &mut Crossings { within, from, each });
+        vectorize(FindCrossings { geometry: self, ray, query: Crossings { within, from, each } })
     }
 
     /// The full record of a hit found with this ray.
@@ -245,20 +185,39 @@ impl Geometry {
 
     /// Shows the query every shape that the ray can hit, until it breaks.
     #[inline(always)]
-    fn ask<Q: Query>(&self, ray: &Ray, local: Option<LocalRay>, query: &mut Q) -> ControlFlow<()> {
+    fn ask<L: Lanes, Q: Query>(
+        &self,
+        lanes: L,
+        ray: &Ray,
+        local: Option<&LocalRay>,
+        query: &mut Q,
+    ) -> ControlFlow<()> {
         if self.plain {
             for (object, shape) in self.shapes.iter().enumerate() {
                 query.visit(ray, object as u32, shape)?;
             }
             return ControlFlow::Continue(());
         }
+        self.ask_apart(ray, query)?;
+        match local {
+            Some(local) => traverse(lanes, &self.tree, &self.store, ray, local, query),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Shows the query the shapes outside the tree.
+    #[inline(always)]
+    fn ask_apart<Q: Query>(&self, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
         for run in &self.apart {
             self.store.visit(*run, ray, query)?;
         }
-        match local {
-            Some(local) => vectorize(Descent { tree: &self.tree, store: &self.store, ray, local, query }),
-            None => ControlFlow::Continue(()),
-        }
+        ControlFlow::Continue(())
+    }
+
+    /// The first of the hits within an interval in which several objects are hit, too close to be sure.
+    #[cold]
+    fn decide(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
+        vectorize(Decide { geometry: self, ray, within, from })
     }
 }
 
@@ -266,4 +225,111 @@ impl Geometry {
 #[inline(always)]
 fn is_legal(ray: &Ray, within: Interval) -> bool {
     ray.is_valid() && within.min < within.max
+}
+
+struct FindNearest<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for FindNearest<'_> {
+    type Output = Option<Found>;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
+        let FindNearest { geometry, ray, within, from } = self;
+        if !is_legal(ray, within) {
+            return None;
+        }
+        let (local, window) = geometry.frame.enter(ray, within);
+        let mut nearest = Nearest::new(within, window, from.map(|from| from.object));
+        if let Some((from, shape)) = geometry.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            nearest.offer(from.object, hit);
+        }
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
+        match nearest.ruling() {
+            Ruling::Clear(found) => found,
+            Ruling::Contested(within) => geometry.decide(ray, within, from),
+        }
+    }
+}
+
+struct Decide<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for Decide<'_> {
+    type Output = Option<Found>;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
+        let Decide { geometry, ray, within, from } = self;
+        let mut contest = Contest::new(within, from.map(|from| from.object));
+        if let Some((from, shape)) = geometry.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            contest.offer(ray, from.object, shape, hit);
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut contest);
+        contest.winner()
+    }
+}
+
+struct FindAny<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for FindAny<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        let FindAny { geometry, ray, within, from } = self;
+        if !is_legal(ray, within) {
+            return false;
+        }
+        if let Some((from, shape)) = geometry.departed(from)
+            && shape.hit_leaving(ray, within, from).is_some()
+        {
+            return true;
+        }
+        let mut any = Any::new(within, from.map(|from| from.object));
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut any);
+        any.found
+    }
+}
+
+struct FindCrossings<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    query: Crossings<'a>,
+}
+
+impl Vectorized for FindCrossings<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let FindCrossings { geometry, ray, mut query } = self;
+        let within = query.within;
+        if !is_legal(ray, within) {
+            return;
+        }
+        if let Some((from, shape)) = geometry.departed(query.from) {
+            let crossings = |each: &mut dyn FnMut(Hit)| shape.crossings_leaving(ray, within, from, each);
+            if query::report(from.object, query.each, crossings).is_break() {
+                return;
+            }
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
+    }
 }

@@ -6,20 +6,11 @@ use super::query::Query;
 use super::store::Store;
 use super::tree::{Child, Node, Tree};
 use crate::Ray;
-use crate::kernel::{Lanes, SlabRay, Stack, Vectorized};
+use crate::kernel::{Lanes, SlabRay, Stack};
 use core::ops::ControlFlow;
 
 /// Each level leaves at most seven children behind.
 pub(super) const STACK: usize = 7 * MOST_DEPTH + 8;
-
-/// A query of one ray.
-pub(super) struct Descent<'a, Q> {
-    pub tree: &'a Tree,
-    pub store: &'a Store,
-    pub ray: &'a Ray,
-    pub local: LocalRay,
-    pub query: &'a mut Q,
-}
 
 /// Where the ray enters a box, and what it holds, in one number that sorts by the former (not negative, so its bits
 /// are in order).
@@ -73,39 +64,46 @@ pub(super) fn descend<L: Lanes>(
     Some(unpack(near).1)
 }
 
-impl<Q: Query> Vectorized for Descent<'_, Q> {
-    type Output = ControlFlow<()>;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> ControlFlow<()> {
-        let Descent { tree, store, ray, local, query } = self;
-        let slab = SlabRay::new(lanes, local.origin, local.error, local.direction);
-        let mut limit = local.limit(query.limit());
-        let mut stack = Stack::<STACK>::default();
-        let mut child = Child::node(0);
-        loop {
-            let next = match child.as_node() {
-                Some(index) => {
-                    tree.nodes.get(index).and_then(|node| descend(lanes, node, &slab, limit, &mut stack))
+/// Shows the query the shapes of the tree that the ray may hit, until it breaks.
+#[inline(always)]
+pub(super) fn traverse<L: Lanes, Q: Query>(
+    lanes: L,
+    tree: &Tree,
+    store: &Store,
+    ray: &Ray,
+    local: &LocalRay,
+    query: &mut Q,
+) -> ControlFlow<()> {
+    let slab = SlabRay::new(lanes, local.origin, local.error, local.direction);
+    let mut end = query.limit();
+    let mut limit = local.limit(end);
+    let mut stack = Stack::<STACK>::default();
+    let mut child = Child::node(0);
+    loop {
+        let next = match child.as_node() {
+            Some(index) => {
+                tree.nodes.get(index).and_then(|node| descend(lanes, node, &slab, limit, &mut stack))
+            }
+            None => {
+                store.visit(child.run(), ray, query)?;
+                if query.limit() != end {
+                    end = query.limit();
+                    limit = local.limit(end);
                 }
-                None => {
-                    store.visit(child.run(), ray, query)?;
-                    limit = local.limit(query.limit());
-                    None
+                None
+            }
+        };
+        child = match next {
+            Some(next) => next,
+            None => loop {
+                let Some(top) = stack.pop() else {
+                    return ControlFlow::Continue(());
+                };
+                let (at, child) = unpack(top);
+                if at <= limit {
+                    break child;
                 }
-            };
-            child = match next {
-                Some(next) => next,
-                None => loop {
-                    let Some(top) = stack.pop() else {
-                        return ControlFlow::Continue(());
-                    };
-                    let (at, child) = unpack(top);
-                    if at <= limit {
-                        break child;
-                    }
-                },
-            };
-        }
+            },
+        };
     }
 }
