@@ -62,7 +62,9 @@ impl Task for Near<'_> {
         let mut slope = slope.high;
         // Each step more than doubles the correct bits, of which there are 30 or more at first.
         for _ in 0..3 {
-            if exact::finished(&line, x, slope, step.high) {
+            // What is left must vanish beside a rounding of t, of the size and of the tube.
+            let least = (t.high * line.length.high).abs().min(self.torus.minor_scaled);
+            if exact::left(&line, x, slope, step.high) <= exp2i(-70) * least {
                 break;
             }
             let (value, steepness) = line.value::<P>(x);
@@ -115,28 +117,31 @@ impl Torus {
     /// The record of the point at distance `x` from the closest approach.
     #[inline(always)]
     fn record<P: Product>(&self, ray: &ScaledRay, line: &Line, x: Double) -> Surface {
-        let local = line.at::<P>(x);
-        let [first, second, axis] = self.frame;
-        let (x_own, y_own, z) = (local.dot::<P>(first), local.dot::<P>(second), local.dot::<P>(axis));
-        let rho = (x_own.square::<P>() + y_own.square::<P>()).sqrt::<P>();
-        let minor = Double::from(self.minor_scaled);
+        let (parameter, local) = line.at::<P>(x);
+        let axis = self.frame[2];
+        let z = line.z + x.mul::<P>(line.slope);
+        let across = local - axis.mul::<P>(z);
+        let rho = across.length_squared::<P>().sqrt::<P>();
         // How far the point is from the surface as seen from the near and from the far side of the generating
         // circle, in squares: on the inner sheet of a spindle the second vanishes.
-        let height = z.square::<P>() - minor.square::<P>();
-        let near = (rho - self.major_scaled).square::<P>() + height;
-        let far = (rho + self.major_scaled).square::<P>() + height;
-        let inner = far.high.abs() < near.high.abs();
-        // From the circle to the point: `out` along the radius, `z` along the axis.
+        let inner = self.minor > self.major && {
+            let height = z.square::<P>() - Double::product::<P>(self.minor_scaled, self.minor_scaled);
+            let near = (rho - self.major_scaled).square::<P>() + height;
+            let far = (rho + self.major_scaled).square::<P>() + height;
+            far.high.abs() < near.high.abs()
+        };
+        // From the circle to the point: `out` along the radius, `z` along the axis. No digit is lost in what follows.
         let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
         let normal = if rho.high > 0.0 {
-            let radial = out.div::<P>(rho.mul::<P>(minor));
-            let axial = z.div::<P>(minor);
-            ((local - axis.mul::<P>(z)).mul::<P>(radial) + axis.mul::<P>(axial)).high()
+            across.high() * (out.high / (rho.high * self.minor_scaled))
+                + self.axis * (z.high / self.minor_scaled)
         } else {
             // On the axis, where the sheets meet in a point.
-            axis.high() * if z.high < 0.0 { -1.0 } else { 1.0 }
+            self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
-        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own.high, y_own.high, z.high));
+        let flat = local.high();
+        let (x_own, y_own) = (flat.dot(self.frame[0].high()), flat.dot(self.frame[1].high()));
+        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own, y_own, z.high));
         let world = local.scale_exact(unit);
         let point = world.plus_f64(self.center);
         // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
@@ -146,9 +151,9 @@ impl Torus {
         } else {
             DVec2::new(turns(own.x, own.y), turns(out.high, own.z))
         };
-        let t = ray.unscale(line.parameter_at::<P>(x)).to_f64();
+        let t = ray.unscale(parameter).to_f64();
         let uncertainty = exact::uncertainty(self, line, x.high);
-        let error = self.error_radius(point, uncertainty, line.value::<P>(x).1.high);
+        let error = self.error_radius(point, uncertainty, line.slope_at(x.high));
         Surface::new(t, point, world.high(), normal, error).with_uv(uv).with_object_point(own * unit)
     }
 
