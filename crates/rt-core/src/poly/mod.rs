@@ -93,6 +93,13 @@ impl<const N: usize> Roots<N> {
         }
     }
 
+    /// Every root times a power of two.
+    #[inline]
+    pub(crate) fn scaled(mut self, power: f64) -> Self {
+        self.list.iter_mut().for_each(|root| root.x *= power);
+        self
+    }
+
     /// The roots inside the interval, in a list of another capacity.
     #[inline]
     pub(crate) fn within<const M: usize>(&self, within: Interval) -> Roots<M> {
