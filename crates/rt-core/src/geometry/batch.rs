@@ -129,8 +129,10 @@ fn block<R: Request, L: Lanes>(
             }
         }
         let active = packet.active;
-        if let Some(beam) = packet.beam(geometry.tree.box_size) {
-            packet.traverse(lanes, geometry, &beam);
+        let places = packet.places();
+        let beam = places.as_ref().and_then(|places| places.beam(geometry.tree.box_size));
+        if let (Some(places), Some(beam)) = (places, beam) {
+            packet.traverse(lanes, geometry, &places, &beam);
             for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
             }
