@@ -180,7 +180,10 @@ fn family(
         let (ours, other) = (shape.hit(ray, Interval::FORWARD), textbook(ray, Interval::FORWARD));
         if let Some(hit) = ours {
             let surface = shape.surface(ray, hit);
-            assert!((surface.t - hit.t()).abs() <= 1e-9 * (1.0 + surface.t), "{name}: {ray:?} {hit:?} {surface:?}");
+            assert!(
+                (surface.t - hit.t()).abs() <= 1e-9 * (1.0 + surface.t),
+                "{name}: {ray:?} {hit:?} {surface:?}"
+            );
         }
         if trusted {
             match (ours, other) {

@@ -1,7 +1,7 @@
 //! Builds a scene in Rust and writes a PNG: `cargo run --release --example build_scene -- out.png`.
 
-use rt::core::shape::{Plane, Sphere, Torus};
-use rt::shade::{
+use rt::rt_core::shape::{Plane, Sphere, Torus};
+use rt::rt_shade::{
     Antialias, Attenuation, Camera, Checker, Color, Light, Material, Paint, Scene, Settings, Texture, render,
 };
 

@@ -69,7 +69,7 @@ pub fn answer(
         };
         if let Err(BadLine { column, message }) = result {
             output.flush().map_err(Failure::stdout)?;
-            return Err(Failure::Input(format!("stdin:{number}:{column}: error: {message}")));
+            return Err(Failure::Input(format!("<stdin>:{number}:{column}: error: {message}")));
         }
         reply.push(b'\n');
         output.write_all(&reply).map_err(Failure::stdout)?;
@@ -100,7 +100,7 @@ mod tests {
         let mut out = Vec::new();
         let failure = answer(&b"one\n\r\ntwo\nbad\nthree\n"[..], &mut out, echo).unwrap_err();
         assert_eq!(out, b"one\ntwo\n");
-        assert_eq!(failure.to_string(), "stdin:4:2: error: no good");
+        assert_eq!(failure.to_string(), "<stdin>:4:2: error: no good");
         assert_eq!(failure.exit_code(), 3);
     }
 

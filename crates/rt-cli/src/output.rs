@@ -53,6 +53,13 @@ impl Output {
             return Ok(Output::Stdout);
         }
         let failed = |source| Failure::File { action: "write", path: path.into(), source };
+        if path == Path::new("/dev/stdout") {
+            return Ok(Output::Stdout);
+        }
+        // `/dev/fd/3` and its like lead to open files, which a rename would take away from their other writers.
+        if path.starts_with("/dev") && fs::metadata(path).is_ok_and(|found| !found.is_dir()) {
+            return Ok(Output::Device(path.into()));
+        }
         let target = follow_links(path).map_err(failed)?;
         match fs::metadata(&target) {
             Ok(found) if found.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
@@ -89,7 +96,7 @@ impl Output {
                 stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(Failure::stdout)
             }
             Output::Device(path) => {
-                let write = || OpenOptions::new().write(true).open(path)?.write_all(bytes);
+                let write = || OpenOptions::new().append(true).open(path)?.write_all(bytes);
                 write().map_err(Failure::file("write", path))
             }
             Output::File { shown, path } => {
@@ -104,8 +111,7 @@ impl Output {
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut temporary = temporary_beside(path)?;
     set_unfinished(Some(temporary.path().to_path_buf()));
-    temporary.write_all(bytes)?;
-    temporary.flush()?;
+    temporary.write_all(bytes).and_then(|()| temporary.flush()).map_err(plain)?;
     if let Ok(old) = fs::metadata(path) {
         temporary.as_file().set_permissions(old.permissions())?;
     }
@@ -133,7 +139,16 @@ fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder_of(path))
+    builder.tempfile_in(folder_of(path)).map_err(plain)
+}
+
+/// The system's own error: the temporary file's name, which the wrapped one adds, tells nobody anything.
+fn plain(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|e| e.source()).and_then(|e| e.downcast_ref::<io::Error>());
+    match inner.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
+    }
 }
 
 /// Makes the rename itself last. Not every file system can: then the data are safe and the name follows when it may.

@@ -14,6 +14,9 @@ const PNG_SIGNATURE: &[u8; 8] = b"\x89PNG\r\n\x1a\n";
 /// Signature, then the header chunk: length, name, 13 bytes, checksum.
 const PNG_HEADER: usize = 8 + 4 + 4 + 13 + 4;
 
+/// More than the text of a place can take.
+const LONGEST_LINE: usize = 200;
+
 /// The K-th of N parts, as given on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
@@ -109,22 +112,22 @@ impl Place {
         }
     }
 
-    /// Finds the place in an encoded picture.
-    pub fn find(file: &[u8]) -> Option<Place> {
-        let text = if file.starts_with(PNG_SIGNATURE) {
+    /// Finds the place in an encoded picture, and the picture without it.
+    pub fn find(file: &[u8]) -> Option<(Place, &[u8])> {
+        let (text, picture) = if file.starts_with(PNG_SIGNATURE) {
             let length = u32::from_be_bytes(file.get(PNG_HEADER..PNG_HEADER + 4)?.try_into().ok()?) as usize;
             let chunk = file.get(PNG_HEADER + 4..)?.get(..length.checked_add(4)?)?;
-            chunk.strip_prefix(b"tEXt")?.strip_prefix(KEYWORD.as_bytes())?.strip_prefix(b"\0")?
+            // Readers of PNG pass over the text.
+            (chunk.strip_prefix(b"tEXt")?.strip_prefix(KEYWORD.as_bytes())?.strip_prefix(b"\0")?, file)
         } else {
             // The last line; a pixel may hold a line feed, the line itself does not.
             let line = file.strip_suffix(b"\n")?;
-            let tail = &line[line.len().saturating_sub(200)..];
-            let start = tail
-                .windows(2 + KEYWORD.len())
-                .rposition(|w| w.starts_with(b"# ") && w.ends_with(KEYWORD.as_bytes()))?;
-            &tail[start + 2 + KEYWORD.len()..]
+            let mark = format!("# {KEYWORD} ").into_bytes();
+            let tail = line.len().saturating_sub(LONGEST_LINE);
+            let start = tail + line[tail..].windows(mark.len()).rposition(|window| window == mark)?;
+            (&line[start + mark.len()..], &file[..start])
         };
-        Place::parse(std::str::from_utf8(text).ok()?)
+        Some((Place::parse(std::str::from_utf8(text).ok()?)?, picture))
     }
 }
 
@@ -192,8 +195,9 @@ mod tests {
         for mut file in [picture.to_pfm(), picture.to_png().unwrap()] {
             assert_eq!(Place::find(&file), None);
             PLACE.attach(&mut file);
-            assert_eq!(Place::find(&file), Some(PLACE));
-            assert_eq!(rt_shade::Picture::decode(&file).unwrap(), picture);
+            let (place, rest) = Place::find(&file).unwrap();
+            assert_eq!(place, PLACE);
+            assert_eq!(rt_shade::Picture::decode(rest).unwrap(), picture);
         }
     }
 

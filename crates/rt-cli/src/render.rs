@@ -178,32 +178,56 @@ fn fingerprint(options: &Options, settings: &Settings, loaded: &Loaded) -> u64 {
     place::mix(loaded.hash, words.as_bytes())
 }
 
+/// What `--stats` writes.
+#[derive(serde::Serialize)]
+struct Report {
+    eye_rays: u64,
+    eye_hits: u64,
+    shadow_rays: u64,
+    shadow_hits: u64,
+    reflected_rays: u64,
+    refracted_rays: u64,
+    secondary_hits: u64,
+    primitives: usize,
+    lights: usize,
+    threads: usize,
+    load_s: f64,
+    build_s: f64,
+    trace_s: f64,
+    write_s: f64,
+    width: u32,
+    height: u32,
+    complete: bool,
+}
+
 fn stats(loaded: &Loaded, settings: &Settings, rendering: &Rendering, times: Times) -> String {
     let counts = &rendering.stats;
     let threads = match settings.threads {
         0 => std::thread::available_parallelism().map_or(1, usize::from),
         n => n,
     };
-    let json = serde_json::json!({
-        "eye_rays": counts.eye_rays,
-        "eye_hits": counts.eye_hits,
-        "shadow_rays": counts.shadow_rays,
-        "shadow_hits": counts.shadow_hits,
-        "reflected_rays": counts.reflected_rays,
-        "refracted_rays": counts.refracted_rays,
-        "secondary_hits": counts.secondary_hits,
-        "primitives": loaded.scene.geometry().shapes().len(),
-        "lights": loaded.scene.lights().len(),
-        "threads": threads,
-        "load_s": times.load.as_secs_f64(),
-        "build_s": times.build.as_secs_f64(),
-        "trace_s": times.trace.as_secs_f64(),
-        "write_s": times.write.as_secs_f64(),
-        "width": rendering.picture.width(),
-        "height": rendering.picture.height(),
-        "complete": rendering.complete,
-    });
-    format!("{json:#}\n")
+    let seconds = |time: Duration| time.as_secs_f64();
+    let report = Report {
+        eye_rays: counts.eye_rays,
+        eye_hits: counts.eye_hits,
+        shadow_rays: counts.shadow_rays,
+        shadow_hits: counts.shadow_hits,
+        reflected_rays: counts.reflected_rays,
+        refracted_rays: counts.refracted_rays,
+        secondary_hits: counts.secondary_hits,
+        primitives: loaded.scene.geometry().shapes().len(),
+        lights: loaded.scene.lights().len(),
+        threads,
+        load_s: seconds(times.load),
+        build_s: seconds(times.build),
+        trace_s: seconds(times.trace),
+        write_s: seconds(times.write),
+        width: rendering.picture.width(),
+        height: rendering.picture.height(),
+        complete: rendering.complete,
+    };
+    // Numbers alone: nothing in it can fail to be written.
+    serde_json::to_string_pretty(&report).map(|json| json + "\n").unwrap_or_default()
 }
 
 fn summary(options: &Options, rendering: &Rendering, times: Times) -> String {

@@ -1,8 +1,7 @@
 //! Reads a scene and its pictures from files.
 
 use crate::failure::Failure;
-use rt_shade::text::{self, Diagnostics, PictureLoader};
-use rt_shade::{Scene, Settings};
+use rt_shade::{Scene, Settings, text};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -22,7 +21,7 @@ pub struct Loaded {
     pub hash: u64,
     /// How long reading, parsing and checking took.
     pub load: Duration,
-    /// How long the acceleration structure took, where it is built apart.
+    /// How long the acceleration structure took.
     pub build: Duration,
 }
 
@@ -45,21 +44,11 @@ pub fn load(path: &Path) -> Result<Loaded, Failure> {
         _ => Path::new("."),
     };
     let pictures = |path: &str| read_picture(folder, path);
-    let loaded = parse(&name, &bytes, &pictures);
+    let loaded = text::load(&name, &bytes, &pictures);
     let text::Loaded { scene, settings, .. } = loaded.map_err(|errors| Failure::Input(errors.to_string()))?;
     let hash = crate::place::mix(crate::place::EMPTY_HASH, &bytes);
-    Ok(Loaded { scene, settings, hash, load: start.elapsed(), build: Duration::ZERO })
-}
-
-/// Parses the scene; the file's ending tells the format.
-fn parse(name: &str, bytes: &[u8], pictures: &dyn PictureLoader) -> Result<text::Loaded, Diagnostics> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text::load_toml(name, text, pictures),
-        Err(error) => {
-            let at = error.valid_up_to();
-            Err(Diagnostics::of_file(name, format!("not UTF-8 text: byte {at} cannot be part of it")))
-        }
-    }
+    let build = scene.build_time();
+    Ok(Loaded { scene, settings, hash, load: start.elapsed().saturating_sub(build), build })
 }
 
 fn read_at_most(mut from: impl Read, most: u64) -> io::Result<Vec<u8>> {
@@ -78,7 +67,9 @@ fn read_picture(folder: &Path, path: &str) -> Result<Vec<u8>, String> {
     let failed = |error: io::Error| format!("{} ({})", reason(&error), tried.display());
     let real = tried.canonicalize().map_err(failed)?;
     if !real.starts_with(folder.canonicalize().map_err(failed)?) {
-        return Err("a symbolic link leads out of the scene's folder: put the picture beside the scene".into());
+        return Err(
+            "a symbolic link leads out of the scene's folder: put the picture beside the scene".into()
+        );
     }
     // Opening a pipe would wait for a writer, a device might never end.
     let is_file = |path: &PathBuf| path.metadata().map(|found| found.is_file());

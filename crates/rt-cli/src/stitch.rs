@@ -24,7 +24,7 @@ pub fn run(parts: &[PathBuf], output: &Path) -> Result<(), Failure> {
                 output.display()
             )));
         }
-        let Some(place) = Place::find(&bytes) else {
+        let Some((place, _)) = Place::find(&bytes) else {
             return Err(wrong(path, "not a part of a picture: parts are rendered with --tile K/N"));
         };
         found.push((place, path));
@@ -37,7 +37,8 @@ pub fn run(parts: &[PathBuf], output: &Path) -> Result<(), Failure> {
     let columns = width as usize;
     for (place, path) in &found {
         let bytes = fs::read(path).map_err(Failure::file("read", *path))?;
-        let part = Picture::decode(&bytes).map_err(|error| wrong(path, &error.to_string()))?;
+        let (_, picture) = Place::find(&bytes).unwrap_or((*place, &bytes));
+        let part = Picture::decode(picture).map_err(|error| wrong(path, &error.to_string()))?;
         let (first, end) = place.part.rows(height);
         if (part.width(), part.height()) != (width, end - first) {
             let (w, h) = (part.width(), part.height());

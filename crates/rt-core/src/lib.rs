@@ -26,6 +26,9 @@ mod ray;
 mod scaled;
 pub mod shape;
 mod surface;
+#[cfg(feature = "testing")]
+#[cfg_attr(docsrs, doc(cfg(feature = "testing")))]
+pub mod testing;
 mod transform;
 
 pub use bounds::Aabb;

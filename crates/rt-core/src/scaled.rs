@@ -190,9 +190,17 @@ pub(crate) enum Rough {
     Doubt,
 }
 
-/// Whether squares and products of a few numbers of this size stay exact enough: far from under- and overflow.
-/// False for NaN.
+/// Whether a sum of squares is far from under- and overflow: in `2^-400..2^400`. False for NaN.
 #[inline(always)]
-pub(crate) fn moderate(x: f64) -> bool {
-    x > exp2i(-400) && x < exp2i(400)
+pub(crate) fn moderate(square: f64) -> bool {
+    // One comparison: the bits of positive numbers are ordered like the numbers.
+    const LEAST: u64 = exp2i(-400).to_bits();
+    square.to_bits().wrapping_sub(LEAST) < exp2i(400).to_bits() - LEAST
+}
+
+/// Zero, or NaN for a length whose square is near under- or overflow: added to a bound of errors, it leaves every
+/// decision in doubt, until the ray is rescaled.
+#[inline]
+pub(crate) fn range_guard(length: f64) -> f64 {
+    if length > exp2i(-200) && length < exp2i(200) { 0.0 } else { f64::NAN }
 }

@@ -50,10 +50,11 @@ impl Color {
         self.r.max(self.g).max(self.b)
     }
 
-    /// The channels as the nearest `f32`.
+    /// The channels as the nearest finite `f32`.
     #[inline]
     pub fn to_f32(self) -> [f32; 3] {
-        [self.r as f32, self.g as f32, self.b as f32]
+        let finite = |v: f64| (v as f32).clamp(f32::MIN, f32::MAX);
+        [finite(self.r), finite(self.g), finite(self.b)]
     }
 }
 

@@ -24,8 +24,8 @@ pub enum Error {
         /// The value given.
         value: DVec3,
     },
-    /// A colour with a channel that is negative, NaN or infinite.
-    #[error("{what} must have channels of at least 0, finite, got [{}, {}, {}]", value[0], value[1], value[2])]
+    /// A colour with a channel that is negative, NaN or above 1e30.
+    #[error("{what} must have channels from 0 to 1e30, got [{}, {}, {}]", value[0], value[1], value[2])]
     Color {
         /// What the colour is.
         what: &'static str,

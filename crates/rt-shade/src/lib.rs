@@ -7,6 +7,7 @@
 
 pub use rt_core;
 
+mod adaptive;
 mod camera;
 mod color;
 mod error;

@@ -3,6 +3,9 @@
 use crate::{Color, Error};
 use rt_core::glam::DVec3;
 
+/// The brightest legal channel of any colour, and the largest legal share: products of a few of them stay finite.
+pub(crate) const MOST_LIGHT: f64 = 1e30;
+
 /// How light fades with the distance `d`: `1 / (constant + linear d + quadratic d^2)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attenuation {
@@ -35,10 +38,11 @@ impl Attenuation {
         Ok(Attenuation { constant, linear, quadratic })
     }
 
-    /// The factor on the light at this distance.
+    /// The factor on the light at this distance; at most 1e30, so that no colour overflows next to a lamp.
     #[inline]
     pub fn at(&self, distance: f64) -> f64 {
-        1.0 / (self.constant + self.linear * distance + self.quadratic * (distance * distance))
+        let divisor = self.constant + self.linear * distance + self.quadratic * (distance * distance);
+        (1.0 / divisor).min(MOST_LIGHT)
     }
 }
 
@@ -159,7 +163,7 @@ impl Light {
 }
 
 pub(crate) fn check_color(what: &'static str, color: Color) -> Result<(), Error> {
-    let legal = |v: f64| v >= 0.0 && v.is_finite();
+    let legal = |v: f64| (0.0..=MOST_LIGHT).contains(&v);
     if legal(color.r) && legal(color.g) && legal(color.b) {
         Ok(())
     } else {

@@ -1,6 +1,6 @@
 //! What a surface does with light.
 
-use crate::light::check_color;
+use crate::light::{MOST_LIGHT, check_color};
 use crate::{Color, Error};
 
 /// Where the colour of a surface comes from.
@@ -76,8 +76,8 @@ impl Material {
             && (self.ior.is_none() || self.optics == Optics::Plain)
     }
 
-    /// Whether every number is legal: colours, `diffuse`, `specular` and `shininess` at least 0 and finite, `ior`
-    /// greater than 0 and finite, `reflect` at least 0 and, with [`Optics::Fresnel`], at most 1.
+    /// Whether every number is legal: colours, `diffuse` and `specular` from 0 to 1e30, `shininess` from 0 to 1e9,
+    /// `reflect` and the channels of `transmit` from 0 to 1, `ior` from 0.001 to 1000.
     ///
     /// # Errors
     /// [`Error::Number`] or [`Error::Color`].
@@ -85,22 +85,20 @@ impl Material {
         if let Paint::Color(color) = self.paint {
             check_color("color", color)?;
         }
-        check_color("transmit", self.transmit)?;
-        for (what, value) in
-            [("diffuse", self.diffuse), ("specular", self.specular), ("shininess", self.shininess)]
-        {
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(Error::Number { what, range: "at least 0 and finite", value });
-            }
-        }
-        let most = if self.optics == Optics::Fresnel { 1.0 } else { f64::MAX };
-        if !(self.reflect >= 0.0 && self.reflect <= most) {
-            return Err(Error::Number { what: "reflect", range: "from 0 to 1", value: self.reflect });
+        let number = |what, value: f64, most: f64, range| {
+            if (0.0..=most).contains(&value) { Ok(()) } else { Err(Error::Number { what, range, value }) }
+        };
+        number("diffuse", self.diffuse, MOST_LIGHT, "from 0 to 1e30")?;
+        number("specular", self.specular, MOST_LIGHT, "from 0 to 1e30")?;
+        number("shininess", self.shininess, 1e9, "from 0 to 1e9")?;
+        number("reflect", self.reflect, 1.0, "from 0 to 1")?;
+        for value in <[f64; 3]>::from(self.transmit) {
+            number("transmit", value, 1.0, "from 0 to 1")?;
         }
         if let Some(value) = self.ior
-            && !(value > 0.0 && value.is_finite())
+            && !(0.001..=1000.0).contains(&value)
         {
-            return Err(Error::Number { what: "ior", range: "greater than 0 and finite", value });
+            return Err(Error::Number { what: "ior", range: "from 0.001 to 1000", value });
         }
         Ok(())
     }

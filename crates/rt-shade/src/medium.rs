@@ -89,3 +89,47 @@ impl Media {
         self.entered.iter().rposition(|m| m.key == key)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GLASS: Medium = Medium { key: 3, ior: 1.5 };
+    const WATER: Medium = Medium { key: 7, ior: 1.33 };
+
+    #[test]
+    fn nested_media_come_back() {
+        let mut media = Media::default();
+        assert_eq!(media.boundary(GLASS, true), Boundary { from: 1.0, to: 1.5 });
+        let glass = media.cross(GLASS, true);
+        assert_eq!(media.boundary(WATER, true), Boundary { from: 1.5, to: 1.33 });
+        let water = media.cross(WATER, true);
+        assert_eq!(media.boundary(WATER, false), Boundary { from: 1.33, to: 1.5 });
+        media.undo(water);
+        assert_eq!(media.current(), 1.5);
+        assert_eq!(media.boundary(GLASS, false), Boundary { from: 1.5, to: 1.0 });
+        media.undo(glass);
+        assert_eq!(media.current(), 1.0);
+    }
+
+    #[test]
+    fn leaving_what_is_not_latest_does_not_bend() {
+        let mut media = Media::default();
+        media.cross(GLASS, true);
+        media.cross(WATER, true);
+        assert_eq!(media.boundary(GLASS, false), Boundary { from: 1.33, to: 1.33 });
+        let change = media.cross(GLASS, false);
+        assert_eq!(media.boundary(WATER, false), Boundary { from: 1.33, to: 1.0 });
+        media.undo(change);
+        assert_eq!(media.boundary(WATER, false), Boundary { from: 1.33, to: 1.5 });
+    }
+
+    #[test]
+    fn leaving_what_was_never_entered_leads_out_of_it() {
+        let mut media = Media::default();
+        assert_eq!(media.boundary(GLASS, false), Boundary { from: 1.5, to: 1.0 });
+        let change = media.cross(GLASS, false);
+        media.undo(change);
+        assert_eq!(media.current(), 1.0);
+    }
+}

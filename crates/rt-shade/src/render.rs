@@ -2,7 +2,7 @@
 
 use crate::guard::{self, Fault};
 use crate::whitted::Tracer;
-use crate::{Error, Picture, Region, Scene, Settings, Stats, sample};
+use crate::{Antialias, Error, Picture, Region, Scene, Settings, Stats, adaptive, sample};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Hears how far a rendering is, and can end it. `&()` hears nothing; an [`AtomicBool`] ends it when set.
@@ -48,7 +48,11 @@ pub struct Rendering {
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, Error> {
     settings.check()?;
     let region = settings.extent();
-    let tiles = tiles(region, settings.tile);
+    let edge = match settings.antialias {
+        Antialias::Adaptive { depth, .. } => adaptive::tile_edge(depth),
+        _ => settings.tile,
+    };
+    let tiles = tiles(region, edge);
     let count = Count { done: AtomicU64::new(0), rays: AtomicU64::new(0), total: tiles.len() as u64 };
     let work = |tile: &Region| -> Option<Result<Tile, Fault>> {
         if progress.cancelled() {
@@ -111,7 +115,14 @@ fn finish(scene: &Scene, settings: &Settings, tile: Region) -> Result<Tile, Faul
     let mut tracer = Tracer::new(scene, settings);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     guard::take();
-    sample::tile(&mut tracer, &scene.camera, settings, tile, &mut pixels);
+    match settings.antialias {
+        Antialias::Adaptive { threshold, depth } => {
+            let (camera, mut buffers) = (&scene.camera, adaptive::Buffers::default());
+            let how = (threshold, depth);
+            adaptive::tile(&mut tracer, &mut buffers, camera, settings, how, tile, &mut pixels);
+        }
+        _ => sample::tile(&mut tracer, &scene.camera, settings, tile, &mut pixels),
+    }
     match guard::take() {
         Some(fault) => Err(fault),
         None => Ok(Tile { pixels, stats: tracer.stats }),

@@ -1,10 +1,15 @@
 //! A checked scene, ready to be rendered.
 
+use crate::guard::Guarded;
 use crate::light::check_color;
 use crate::medium::Medium;
 use crate::texture::Mapping;
 use crate::{Camera, Color, Error, Light, Material, Paint, Texture};
-use rt_core::{Geometry, GeometryBuilder, Shape};
+use rt_core::glam::DVec3;
+use rt_core::{Geometry, GeometryBuilder, Interval, Ray, Shape};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// What is known of an object beside its shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,10 +35,14 @@ pub struct Scene {
     pub(crate) geometry: Geometry,
     /// By object: what it leaves of the light of a lamp.
     pub(crate) blocks: Vec<Blocks>,
+    /// Whether every object stops all light.
+    pub(crate) all_opaque: bool,
     /// By object: how its texture coordinates lead to a picture.
     pub(crate) mappings: Vec<Mapping>,
     /// The media that the eye is in.
     pub(crate) around_eye: Vec<Medium>,
+    /// How long the acceleration structure took.
+    pub(crate) build_time: Duration,
 }
 
 /// What an object leaves of the light of a lamp at each crossing.
@@ -83,6 +92,11 @@ impl Scene {
         &self.geometry
     }
 
+    /// How long [`SceneBuilder::build`] took to make the acceleration structure.
+    pub fn build_time(&self) -> Duration {
+        self.build_time
+    }
+
     /// What rays see that hit nothing.
     pub fn background(&self) -> Color {
         self.background
@@ -107,6 +121,8 @@ pub struct SceneBuilder {
     materials: Vec<Material>,
     objects: Vec<Object>,
     geometry: GeometryBuilder,
+    /// The first shape of a stranger that cannot be used.
+    fault: Option<Error>,
 }
 
 impl SceneBuilder {
@@ -162,6 +178,17 @@ impl SceneBuilder {
 
     /// One more object; its index.
     pub fn add_object(&mut self, object: Object, shape: impl Into<Shape>) -> u32 {
+        let index = self.objects.len() as u32;
+        let shape = match shape.into() {
+            Shape::Custom(shape) => match Guarded::new(index, &object.name, shape) {
+                Ok(guarded) => Shape::Custom(Arc::new(guarded)),
+                Err(error) => {
+                    self.fault.get_or_insert(error);
+                    return index;
+                }
+            },
+            shape => shape,
+        };
         self.objects.push(object);
         self.geometry.push(shape)
     }
@@ -170,8 +197,11 @@ impl SceneBuilder {
     ///
     /// # Errors
     /// [`Error::NoCamera`], [`Error::NoMaterial`], [`Error::NoTexture`], [`Error::Material`], [`Error::Color`],
-    /// [`Error::TooManyObjects`].
+    /// [`Error::TooManyObjects`]; [`Error::Object`] for a shape of your own whose bounds panic or are no box.
     pub fn build(self) -> Result<Scene, Error> {
+        if let Some(fault) = self.fault {
+            return Err(fault);
+        }
         let camera = self.camera.ok_or(Error::NoCamera)?;
         check_color("background", self.background)?;
         check_color("ambient", self.ambient)?;
@@ -204,14 +234,18 @@ impl SceneBuilder {
                 false => Blocks::Some(transmit),
             }
         });
-        let blocks = blocks.collect();
+        let blocks: Vec<Blocks> = blocks.collect();
+        let all_opaque = blocks.iter().all(|&blocks| blocks == Blocks::All);
+        let start = Instant::now();
         let geometry = self.geometry.build();
+        let build_time = start.elapsed();
         let mappings = geometry.shapes().iter().map(|shape| match shape {
             Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
             Shape::Torus(_) => Mapping::Ring,
             _ => Mapping::Sheet,
         });
         let mappings = mappings.collect();
+        let around_eye = around(camera.eye(), &camera, &geometry, &self.objects, &self.materials);
         Ok(Scene {
             camera,
             background: self.background,
@@ -222,8 +256,63 @@ impl SceneBuilder {
             objects: self.objects,
             geometry,
             blocks,
+            all_opaque,
             mappings,
-            around_eye: Vec::new(),
+            around_eye,
+            build_time,
         })
     }
+}
+
+/// The media that the eye is in, the innermost last: those that a ray from there leaves once more often than it enters.
+///
+/// Only solids and half spaces count. (Glass made of loose faces has no inside that one ray could tell; leaving it
+/// without having entered is right all the same.)
+fn around(
+    eye: DVec3,
+    camera: &Camera,
+    geometry: &Geometry,
+    objects: &[Object],
+    materials: &[Material],
+) -> Vec<Medium> {
+    let medium = |object: u32| {
+        let key = objects[object as usize].material;
+        let material = &materials[key as usize];
+        let solid = match &geometry.shapes()[object as usize] {
+            Shape::Sphere(_) | Shape::Plane(_) | Shape::Cuboid(_) | Shape::Torus(_) => true,
+            Shape::Cylinder(cylinder) => cylinder.is_closed(),
+            Shape::Cone(cone) => cone.is_closed(),
+            _ => false,
+        };
+        let ior = material.ior.filter(|_| solid && !material.transmit.is_black())?;
+        Some(Medium { key, ior })
+    };
+    if objects.iter().enumerate().all(|(index, _)| medium(index as u32).is_none()) {
+        return Vec::new();
+    }
+    // Any direction will do that is along no likely axis.
+    let direction = camera.forward() + camera.right() * 0.137 + camera.up() * 0.0911;
+    let ray = Ray::new(eye, direction);
+    let mut crossings = Vec::new();
+    geometry.crossings(&ray, Interval::FORWARD, None, &mut |found| {
+        if let Some(medium) = medium(found.object) {
+            let leaving = geometry.surface(&ray, found).normal.dot(direction) > 0.0;
+            crossings.push((found.hit.t(), found.object, medium, leaving));
+        }
+        ControlFlow::Continue(())
+    });
+    crossings.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut around: Vec<Medium> = Vec::new();
+    let mut entered: Vec<u32> = Vec::new();
+    for (_, _, medium, leaving) in crossings {
+        if !leaving {
+            entered.push(medium.key);
+        } else if let Some(at) = entered.iter().position(|&key| key == medium.key) {
+            entered.swap_remove(at);
+        } else {
+            around.push(medium);
+        }
+    }
+    around.reverse();
+    around
 }

@@ -1,6 +1,6 @@
 //! Textures: colours as functions of the place on a surface.
 
-use crate::{Color, Error};
+use crate::{Color, Error, guard};
 use rt_core::Surface;
 use rt_core::glam::{DVec2, DVec3};
 use std::fmt;
@@ -42,12 +42,12 @@ pub(crate) enum Mapping {
 impl Texture {
     /// The colour at this place of a surface.
     #[inline]
-    pub(crate) fn color(&self, at: &Surface, mapping: Mapping) -> Color {
+    pub(crate) fn color(&self, at: &Surface, mapping: Mapping, object: u32) -> Color {
         match self {
             Texture::Solid(color) => *color,
             Texture::Checker(checker) => checker.color(at.object_point),
             Texture::Image(image) => image.color(at.uv, mapping),
-            Texture::Custom(pattern) => pattern.color(at),
+            Texture::Custom(pattern) => guard::color(object, &**pattern, at),
         }
     }
 }
@@ -131,6 +131,11 @@ impl ImageTexture {
         ImageTexture::new(width, height, picture.into_pixels(), size)
     }
 
+    /// The colour at these texture coordinates in turns, `v` from 0 at the bottom to 1 at the top.
+    pub fn color_at(&self, uv: DVec2) -> Color {
+        self.color(uv, Mapping::Sheet)
+    }
+
     /// The colour at these texture coordinates, bilinear between the four nearest texel centres.
     ///
     /// Columns are taken modulo the width; rows too where `v` goes on, else the outermost row goes on.
@@ -193,5 +198,111 @@ pub(crate) fn check_size(size: f64) -> Result<(), Error> {
         Ok(())
     } else {
         Err(Error::Number { what: "texture size", range: "greater than 0 and finite", value: size })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rt_core::double::{Double, two_sum};
+
+    fn checker(size: f64) -> Checker {
+        Checker::new([Color::WHITE, Color::BLACK], size).unwrap()
+    }
+
+    #[test]
+    fn squares_alternate() {
+        let c = checker(0.5);
+        let white = |x, y, z| c.color(DVec3::new(x, y, z)) == Color::WHITE;
+        assert!(white(0.1, 0.1, 0.0) && !white(0.6, 0.1, 0.0) && white(0.6, 0.6, 0.0));
+        assert!(!white(-0.1, 0.1, 0.0) && white(-0.1, -0.1, 0.0) && !white(-0.1, -0.1, -0.1));
+        // The edge belongs to the square above it.
+        assert!(!white(0.5, 0.0, 0.0) && white(1.0, 0.0, 0.0));
+        // Beyond 2^53 squares every number is even; nothing overflows.
+        assert!(white(1e300, -1e300, 1e307));
+    }
+
+    #[test]
+    fn checker_is_that_of_exact_arithmetic() {
+        // The square that x lies in, from its exact distance to the two edges next to it.
+        let exact = |x: f64, size: f64| {
+            let near = (x / size).round();
+            // near * size exactly: near has at most 21 bits, so both halves of a split size are exact products.
+            let high = f64::from(size as f32);
+            let (edge, low) = two_sum(near * high, near * (size - high));
+            let rest = Double::difference(x, edge) - low;
+            let to_edge = rest.to_f64();
+            let floor = if to_edge < 0.0 { near - 1.0 } else { near };
+            (floor, to_edge.abs() <= 4.0 * (x.abs() * f64::EPSILON))
+        };
+        let mut state = 1u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut compared = 0;
+        for i in 0..10_000 {
+            let size = 0.1 + random();
+            let near_an_edge = i % 2 == 0;
+            let mut coordinate = || {
+                let squares = (random() - 0.5) * 2e6;
+                let x = if near_an_edge { squares.round() * size } else { squares * size };
+                f64::from_bits(x.to_bits().wrapping_add((random() * 20.0) as u64).wrapping_sub(10))
+            };
+            let p = DVec3::new(coordinate(), coordinate(), coordinate());
+            let axes = [exact(p.x, size), exact(p.y, size), exact(p.z, size)];
+            if axes.iter().any(|&(_, at_edge)| at_edge) {
+                continue;
+            }
+            compared += 1;
+            let odd = axes.iter().fold(0.0, |sum, (floor, _)| sum + floor).rem_euclid(2.0) != 0.0;
+            let expected = if odd { Color::BLACK } else { Color::WHITE };
+            assert_eq!(checker(size).color(p), expected, "{p} {size}");
+        }
+        assert!(compared > 5000, "{compared}");
+    }
+
+    #[test]
+    fn bilinear_at_centres_between_them_and_across_the_seam() {
+        let texels = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3], [5.0; 3], [6.0; 3], [7.0; 3]];
+        let image = ImageTexture::new(4, 2, texels, 1.0).unwrap();
+        let at = |u, v, mapping| image.color(DVec2::new(u, v), mapping).r;
+        // The upper row is 0 1 2 3, at v = 3/4.
+        for (column, u) in [0.125, 0.375, 0.625, 0.875].into_iter().enumerate() {
+            assert_eq!(at(u, 0.75, Mapping::Sheet), column as f64);
+            assert_eq!(at(u, 0.25, Mapping::Sheet), 4.0 + column as f64);
+            assert_eq!(at(u + 5.0, 0.25 - 3.0, Mapping::Ring), 4.0 + column as f64);
+        }
+        assert_eq!(at(0.25, 0.75, Mapping::Sheet), 0.5);
+        assert_eq!(at(0.0, 0.75, Mapping::Sheet), 1.5);
+        assert_eq!(at(1.0, 0.75, Mapping::Sheet), 1.5);
+        assert_eq!(at(0.125, 0.5, Mapping::Sheet), 2.0);
+        // The outermost rows go on, or meet.
+        assert_eq!(at(0.125, 1.0, Mapping::Sheet), 0.0);
+        assert_eq!(at(0.125, 1.0, Mapping::Ring), 2.0);
+        assert_eq!(at(0.125, 0.0, Mapping::Sheet), 4.0);
+    }
+
+    #[test]
+    fn any_coordinates_give_a_colour() {
+        let image = ImageTexture::new(3, 1, vec![[1.0; 3]; 3], 1e-300).unwrap();
+        for u in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e-320, f64::MAX] {
+            for mapping in [Mapping::Tiles, Mapping::Ring, Mapping::Sheet] {
+                let _ = image.color(DVec2::new(u, u), mapping);
+                let _ = image.color(DVec2::new(0.3, u), mapping);
+            }
+        }
+        let _ = checker(1e-300).color(DVec3::new(f64::NAN, f64::INFINITY, 1e300));
+    }
+
+    #[test]
+    fn what_is_no_texture_is_refused() {
+        assert!(matches!(ImageTexture::new(2, 2, vec![[0.0; 3]; 3], 1.0), Err(Error::Size { .. })));
+        assert!(matches!(ImageTexture::new(0, 2, vec![], 1.0), Err(Error::Size { .. })));
+        assert!(matches!(ImageTexture::new(1, 1, vec![[f32::NAN; 3]], 1.0), Err(Error::Color { .. })));
+        assert!(matches!(ImageTexture::new(1, 1, vec![[0.0; 3]], 0.0), Err(Error::Number { .. })));
+        assert!(Checker::new([Color::WHITE, Color::gray(-1.0)], 1.0).is_err());
+        assert!(Checker::new([Color::WHITE; 2], f64::NAN).is_err());
+        assert!(matches!(ImageTexture::decode(b"nothing", 1.0), Err(Error::Decode { .. })));
     }
 }

@@ -10,7 +10,6 @@
 //! Light is only added, never taken away: two shadows that overlap are as dark as one. The sum is taken in the order of
 //! the lamps.
 
-use crate::guard;
 use crate::material::{Optics, Paint};
 use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
@@ -113,9 +112,9 @@ impl<'s> Tracer<'s> {
         let paint = match material.paint {
             Paint::Color(color) => color,
             Paint::Texture(texture) => {
-                let object = v.found.object as usize;
-                let color = scene.textures[texture as usize].color(&v.surface, scene.mappings[object]);
-                guard::checked_color(v.found.object, color)
+                let object = v.found.object;
+                let mapping = scene.mappings[object as usize];
+                scene.textures[texture as usize].color(&v.surface, mapping, object)
             }
         };
         let body = paint * material.diffuse;
@@ -158,10 +157,19 @@ impl<'s> Tracer<'s> {
         let scene = self.scene;
         let start = from.ray(DVec3::ZERO).0.origin;
         let ray = Ray::new(start, lamp - start);
+        let within = Interval::new(0.0, 1.0);
+        // Most lamps are in plain sight, and the question whether anything is there is cheap.
+        if !scene.geometry.occluded_leaving(&ray, within, from) {
+            return Some(Color::WHITE);
+        }
+        if scene.all_opaque {
+            self.stats.shadow_hits += 1;
+            return None;
+        }
         let filters = &mut self.filters;
         filters.clear();
         let mut blocked = false;
-        scene.geometry.crossings(&ray, Interval::new(0.0, 1.0), Some(from), &mut |found| {
+        scene.geometry.crossings(&ray, within, Some(from), &mut |found| {
             match scene.blocks[found.object as usize] {
                 Blocks::All => {
                     blocked = true;

@@ -114,9 +114,9 @@ impl Cuboid {
         let size = ray.direction.abs();
         let least = lesser(size.x, lesser(size.y, size.z));
         let sound = size.x + size.y + size.z < exp2i(1000)
-            && (least > exp2i(-1000) || {
+            && ((least > exp2i(-1000) && (a.x + a.y + a.z).is_finite()) || {
                 let moves =
-                    |d: f64, a: f64, b: f64| d > exp2i(-1000) || (d == 0.0 && !a.is_nan() && !b.is_nan());
+                    |d: f64, a: f64, b: f64| (d > exp2i(-1000) || d == 0.0) && !a.is_nan() && !b.is_nan();
                 moves(size.x, a.x, b.x) && moves(size.y, a.y, b.y) && moves(size.z, a.z, b.z)
             });
         Slabs { a, b, slack: LEAST_CERTAIN, sound, backward: inverse }
@@ -173,19 +173,20 @@ impl Slabs {
         if !(high(entry) < low(leave)) {
             return Err(());
         }
-        // Which face it is has to be certain, and on which side of the ends of the interval it lies.
+        // Which face it is has to be certain, and on which side of the ends of the interval it lies. An end that
+        // equals a parameter was made from that hit, and excludes it.
         if low(entry) > within.min {
             if high(entry) < within.max && low(entry) > high(before) {
                 let back = !(self.backward[i] > 0.0);
                 return Ok(within.admit(entry, 2 * i as u32 + back as u32, 0));
             }
-            return if low(entry) > within.max { Ok(None) } else { Err(()) };
+            return if low(entry) > within.max || entry == within.max { Ok(None) } else { Err(()) };
         }
-        if high(leave) < within.min || !(within.min < within.max) {
+        if high(leave) < within.min || leave == within.min || !(within.min < within.max) {
             return Ok(None);
         }
-        if high(entry) < within.min && low(leave) > within.min {
-            if low(leave) > within.max {
+        if (high(entry) < within.min || entry == within.min) && low(leave) > within.min {
+            if low(leave) > within.max || leave == within.max {
                 return Ok(None);
             }
             let (j, exit, after) = greatest(-far);
@@ -260,7 +261,12 @@ impl Task for Span<'_> {
             };
             let sign = along.high;
             if sign == 0.0 {
-                if low.high > 0.0 || high.high < 0.0 {
+                // Along the world's axes without the scale, in which a small difference may vanish.
+                let beside = match turn {
+                    None => o[i] < min[i] || o[i] > max[i],
+                    Some(_) => low.high > 0.0 || high.high < 0.0,
+                };
+                if beside {
                     return None;
                 }
                 continue;
@@ -375,9 +381,14 @@ impl Primitive for Cuboid {
         if self.turn.is_none() {
             at.local[k] = Double::ZERO;
         }
-        let point = at.point(anchor);
+        let mut point = at.point(anchor);
         let across = if upper { size[k] } else { 0.0 };
-        let local = if self.turn.is_none() { at.local().with_axis(k, across) } else { at.local() };
+        let mut local = at.local();
+        if self.turn.is_none() {
+            // The hit is on the face; what double-double leaves beside it is noise.
+            local = local.with_axis(k, across).clamp(DVec3::ZERO, size);
+            point = point.clamp(self.min, self.max);
+        }
         let object_point = match &self.turn {
             None => local,
             Some(turn) => run(Along { at: &at, axes: &turn.axes }).with_axis(k, across),
@@ -459,9 +470,9 @@ trait WithAxis {
 }
 
 impl WithAxis for DVec3 {
-    fn with_axis(mut self, k: usize, value: f64) -> Self {
-        self[k] = value;
-        self
+    fn with_axis(self, k: usize, value: f64) -> Self {
+        let keep = self.to_array();
+        DVec3::from_array([0, 1, 2].map(|i| if i == k { value } else { keep[i] }))
     }
 }
 

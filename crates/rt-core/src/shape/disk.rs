@@ -1,6 +1,6 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
 use crate::double::Double;
 use crate::kernel::{Product, Task, run};
 use crate::math::sqrt;
@@ -67,6 +67,14 @@ impl Disk {
         Disk::new(by.point(self.center), by.direction(self.normal), self.radius * by.scale())
     }
 
+    /// How far it reaches from its centre along each axis, rounded up: `radius sqrt(1 - n_i^2)`.
+    fn reach(&self) -> DVec3 {
+        let n = self.unit_normal;
+        // sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates round once more.
+        let reach = |a: f64, b: f64| self.radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
+        DVec3::new(reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y))
+    }
+
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         let plane = ExactPlane { anchor: self.center, normal: flat::doubles(self.normal), offset: 0.0 };
         let mut at = flat::meet(&plane, ray, || flat::expansions(self.normal))?;
@@ -74,10 +82,12 @@ impl Disk {
         Some(at)
     }
 
+    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        if !ray.is_valid() {
+    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
+        if !ray.is_valid() || rough == within.min || rough == within.max {
             return None;
         }
         let at = self.meet(ray)?;
@@ -121,7 +131,8 @@ impl Primitive for Disk {
         let t = (n.x + n.y + n.z) * inverse;
         // As for the plane, with one more rounding in the quotient: |dt| |denominator| <= slack.
         let (n, d) = (n.abs(), d.abs());
-        let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * (d.x + d.y + d.z));
+        let sizes = d.x + d.y + d.z;
+        let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
         // The point t d - w errs in each coordinate by |dt| |d| and three roundings; `error` bounds the sum of all
         // three. |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
         // coordinates' sizes; the squares round by 4 u of themselves.
@@ -133,13 +144,13 @@ impl Primitive for Disk {
         let doubt = error * ((q.x + q.y + q.z) + self.radius) + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
         let from_min = (t - within.min).abs() * denominator.abs();
         let from_max = (t - within.max).abs() * denominator.abs();
-        let certain = slack > LEAST_CERTAIN && denominator.abs() > LEAST_DENOMINATOR;
+        let certain = slack > LEAST_CERTAIN && flat::crosses(denominator, sizes);
         if certain && rho2 - r2 > doubt {
             None
         } else if certain && r2 - rho2 > doubt && from_min > slack && from_max > slack {
             within.admit(t, 0, 0)
         } else {
-            self.hit_exactly(ray, within)
+            self.hit_exactly(ray, within, t)
         }
     }
 
@@ -154,19 +165,17 @@ impl Primitive for Disk {
             // Only for a ray that this disk gave no hit for.
             return Surface::new(hit.t(), self.center, DVec3::ZERO, self.unit_normal, self.radius);
         };
-        let point = at.point(self.center);
+        // The hit is inside; what double-double leaves beside the rim is noise.
+        let half = self.reach();
+        let point = at.point(self.center).clamp(self.center - half, self.center + half);
         let uv = at.along(self.axes[0], self.axes[1]);
         Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
             .with_uv(uv)
     }
 
-    /// Along each axis the disk reaches `radius sqrt(1 - n_i^2)` from its centre.
     fn bounds(&self) -> Option<Aabb> {
-        let n = self.unit_normal;
-        // sqrt(n_j^2 + n_k^2) errs by 4 u and the product by u; points that `hit` finds are rounded once more.
-        let reach = |a: f64, b: f64| self.radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
-        let half = DVec3::new(reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y));
+        let half = self.reach();
         Some(flat::outward(self.center, -half, half))
     }
 

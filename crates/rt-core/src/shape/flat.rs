@@ -20,8 +20,13 @@ pub(super) const U: f64 = exp2i(-53);
 /// covers more than a hundred of them.
 pub(super) const LEAST_CERTAIN: f64 = exp2i(-1022) * exp2i(-38);
 
-/// A denominator below this may owe its relative error to underflow (2^-1075 against 2^-53 of the value).
-pub(super) const LEAST_DENOMINATOR: f64 = exp2i(-1000);
+/// Whether at least 29 bits of a denominator are certain, given the sum of its terms' sizes: it errs by less than 4 u
+/// of that, and by 2^-1073 for products that underflow. Rays closer to the plane than 2^-20 are met exactly: for them
+/// the rounded parameter would be of no use to tell which of two surfaces is nearer.
+#[inline(always)]
+pub(super) fn crosses(denominator: f64, sizes: f64) -> bool {
+    denominator.abs() > exp2i(-20) * sizes + exp2i(-1000)
+}
 
 /// The vector itself when it is finite and has a length.
 pub(super) fn checked_direction(what: &'static str, value: DVec3) -> Result<DVec3, Error> {

@@ -4,7 +4,7 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
 use crate::scaled::checked_point;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
@@ -68,10 +68,12 @@ impl Plane {
         flat::meet(&self.exact(), ray, || flat::expansions(self.normal))
     }
 
+    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        if !ray.is_valid() {
+    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
+        if !ray.is_valid() || rough == within.min || rough == within.max {
             return None;
         }
         within.admit(self.meet(ray)?.t, 0, 0)
@@ -89,17 +91,15 @@ impl Primitive for Plane {
         // denominator by 3 u of its own, the quotient by u: |dt| |denominator| <= 4 u (sizes), the fifth pays for the
         // roundings of this bound and of the comparisons.
         let (n, d) = (n.abs(), d.abs());
-        let slack = (5.0 * U) * ((n.x + n.y + n.z) + t.abs() * (d.x + d.y + d.z));
+        let sizes = d.x + d.y + d.z;
+        let slack = (5.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
         let from_min = (t - within.min).abs() * denominator.abs();
         let from_max = (t - within.max).abs() * denominator.abs();
-        if from_min > slack
-            && from_max > slack
-            && slack > LEAST_CERTAIN
-            && denominator.abs() > LEAST_DENOMINATOR
+        if from_min > slack && from_max > slack && slack > LEAST_CERTAIN && flat::crosses(denominator, sizes)
         {
             within.admit(t, 0, 0)
         } else {
-            self.hit_exactly(ray, within)
+            self.hit_exactly(ray, within, t)
         }
     }
 

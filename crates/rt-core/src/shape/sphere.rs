@@ -11,7 +11,7 @@ use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
-    largest, moderate,
+    largest, moderate, range_guard,
 };
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use glam::{DVec2, DVec3};
@@ -25,6 +25,8 @@ use glam::{DVec2, DVec3};
 pub struct Sphere {
     center: DVec3,
     radius: f64,
+    /// 2^-50 of the radius, or NaN where squares would leave the range of the exponents.
+    doubt: f64,
 }
 
 impl Sphere {
@@ -34,10 +36,9 @@ impl Sphere {
     /// [`Error::NotFinite`] or [`Error::OutOfRange`] for a centre that is not finite or has a coordinate beyond
     /// 1e150, [`Error::NotPositive`] or [`Error::OutOfRange`] for the radius.
     pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
-        Ok(Sphere {
-            center: checked_point("center", center.into())?,
-            radius: checked_length("radius", radius)?,
-        })
+        let center = checked_point("center", center.into())?;
+        let radius = checked_length("radius", radius)?;
+        Ok(Sphere { center, radius, doubt: radius * exp2i(-50) + range_guard(radius) })
     }
 
     /// The centre.
@@ -65,13 +66,10 @@ impl Sphere {
         Some((scaled, chord))
     }
 
-    /// Entrance and exit as `f64` finds them, in the units of the given ray.
+    /// Entrance and exit as `f64` finds them.
     #[inline(always)]
     fn rough(&self, ray: &Ray) -> Rough {
-        match rough(self.radius, ray.origin - self.center, ray.direction) {
-            Rough::Doubt => self.rescaled(ray),
-            clear => clear,
-        }
+        rough(self.radius, self.doubt, ray.origin - self.center, ray.direction)
     }
 
     /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
@@ -80,7 +78,8 @@ impl Sphere {
     fn rescaled(&self, ray: &Ray) -> Rough {
         let unit = exponent(self.radius);
         let Some(scaled) = ScaledRay::new(ray, self.center, unit) else { return Rough::Miss };
-        match rough(self.radius * exp2i(-unit), scaled.relative.high(), scaled.direction) {
+        let radius = self.radius * exp2i(-unit);
+        match rough(radius, radius * exp2i(-50), scaled.relative.high(), scaled.direction) {
             Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
             other => other,
         }
@@ -105,39 +104,45 @@ impl Sphere {
             Rough::Span(span) => span[(root & 1) as usize].decide(within, || self.exact(ray, within, root)),
         }
     }
+
+    /// [`Primitive::hit`] where `f64` is in doubt.
+    #[cold]
+    fn hit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = self.rescaled(ray);
+        self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
+    }
 }
 
 /// A line and a sphere about zero in `f64`: certain, or in doubt.
 ///
-/// With `t0 = -w.d / |d|^2` the closest approach `m = w + t0 d` is computed with an error below 2 u |w| + u |m| off the
-/// line (u = 2^-53) and below 9 u |w| along it. Hence `r^2 - |m|^2` errs by less than
-/// `4 u |m| |w| + 6 u |m|^2 + 2 u r^2 + 121 u^2 |w|^2`, and wherever its sign could be in doubt, |m| is at most about r
-/// or 6 u |w|: less than `8 u S r + 128 u^2 S^2` for S = |w| + 2 r, the sum of the sizes of the coordinates for |w|.
-/// Where it is more than `CLEAR` = 2^20 times that, the parameters err by less than 2^-21 of half the chord from the
-/// root, and `9 u |w| / |d|` is less still: 2^-19 of half the chord is a margin.
+/// The distance of the line from the centre is `|w x d| / |d|` (Lagrange's identity), so the crossings are at
+/// `(-w.d -+ sqrt(D)) / |d|^2` with `D = r^2 |d|^2 - |w x d|^2`.
+///
+/// With u = 2^-53, `w x d` errs by less than `2.9 u |w| |d| + u |w x d|`, the rounding of `w` included; hence `D`, where
+/// its sign could be in doubt at all (`|w x d|` about `r |d|` or below the error), by less than
+/// `(5.8 u r |w| + 11 u r^2 + 9 u^2 |w|^2) |d|^2`, less than `(8 u S r + 128 u^2 S^2) |d|^2` for S = |w| + 2 r, with the
+/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^20 times that, the parameters err
+/// by less than 2^-21 of half the chord from the root, and `w.d / |d|^2`, which errs by `9 u |w| / |d|`, by less still:
+/// 2^-19 of half the chord is a margin. `doubt` is 8 u r = 2^-50 r.
 #[inline(always)]
-fn rough(radius: f64, w: DVec3, d: DVec3) -> Rough {
+fn rough(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> Rough {
     let square = d.dot(d);
-    let inverse = 1.0 / square;
-    let t0 = -(w.dot(d) * inverse);
-    let m = w + d * t0;
-    let depth = radius * radius - m.dot(m);
+    let moment = w.cross(d);
+    let depth = radius * radius * square - moment.dot(moment);
     let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
-    if !(moderate(square) && moderate(far)) {
-        return Rough::Doubt;
-    }
-    let doubt = far * (radius * exp2i(-50) + far * exp2i(-99));
-    if depth < -doubt {
+    let doubt = far * (doubt + far * exp2i(-99)) * square;
+    if depth < -doubt && moderate(square) {
         return Rough::Miss;
     }
-    if !(depth > CLEAR * doubt) {
+    if !(depth > CLEAR * doubt && moderate(square)) {
         return Rough::Doubt;
     }
-    let half = sqrt(depth * inverse);
+    let inverse = 1.0 / square;
+    let (middle, half) = (-(w.dot(d) * inverse), sqrt(depth) * inverse);
     let margin = half * exp2i(-19);
     Rough::Span([
-        Candidate { t: t0 - half, margin, part: 0, root: 0 },
-        Candidate { t: t0 + half, margin, part: 0, root: 1 },
+        Candidate { t: middle - half, margin, part: 0, root: 0 },
+        Candidate { t: middle + half, margin, part: 0, root: 1 },
     ])
 }
 
@@ -191,7 +196,6 @@ struct FindSurface<'a> {
 struct Refined {
     t: Double,
     local: DoubleVector,
-    normal: DVec3,
     /// Half the chord, for the error radius.
     half: f64,
 }
@@ -201,6 +205,34 @@ impl Task for FindSurface<'_> {
     #[inline(always)]
     fn run<P: Product>(self) -> Refined {
         let (ray, radius) = (self.ray, self.radius);
+        let d = ray.direction;
+        let square = d.dot(d);
+        let step = -(ray.relative.high().dot(d) / square);
+        let start = ray.relative + DoubleVector::product::<P>(d, step);
+        let m = start.high();
+        let b = m.dot(d);
+        let depth = b * b + square * (radius * radius - m.dot(m));
+        // A chord shorter than 2^-6 of the diameter, or a far ray, takes the longer way.
+        if !(depth > exp2i(-12) * (radius * radius) * square && m.dot(m) < 4.0) {
+            return self.carefully::<P>();
+        }
+        let half = sqrt(depth);
+        let s = (if self.root & 1 == 0 { -half - b } else { half - b }) / square;
+        // One Newton step on |p|^2 = r^2 from a point known to 106 bits. `s` errs by less than 2^-43 (u r^2 / half,
+        // times 2^4 for the roundings), the step by the square of that over the chord, 2^-80.
+        let p = start + DoubleVector::product::<P>(d, s);
+        let excess = p.length_squared::<P>() - Double::product::<P>(radius, radius);
+        let change = -(excess.high / (2.0 * p.high().dot(d)));
+        let t = Double::sum(step, s) + change;
+        Refined { t, local: p + DoubleVector::product::<P>(d, change), half }
+    }
+}
+
+impl FindSurface<'_> {
+    /// From the roots in double-double.
+    #[inline(always)]
+    fn carefully<P: Product>(self) -> Refined {
+        let (ray, radius) = (self.ray, self.radius);
         let chord = FindChord { ray, radius }.run::<P>();
         let s = chord.at[self.root & 1];
         let mut local = chord.start + DoubleVector::from(ray.direction).mul::<P>(s);
@@ -209,21 +241,26 @@ impl Task for FindSurface<'_> {
             let length = local.length_squared::<P>().sqrt::<P>();
             local = local.mul::<P>(Double::from(radius).div::<P>(length));
         }
-        let normal = local.mul::<P>(Double::ONE.div::<P>(Double::from(radius))).high();
         let half = sqrt(if chord.depth.high > 0.0 { chord.depth.high } else { 0.0 });
-        Refined { t: chord.shift + s, local, normal, half }
+        Refined { t: chord.shift + s, local, half }
     }
 }
 
 impl Primitive for Sphere {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = self.rough(ray);
-        self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
+        match self.rough(ray) {
+            Rough::Miss => None,
+            Rough::Doubt => self.hit_in_doubt(ray, within),
+            clear => self.crossing(&clear, ray, within, 0).or_else(|| self.crossing(&clear, ray, within, 1)),
+        }
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        let rough = self.rough(ray);
+        let rough = match self.rough(ray) {
+            Rough::Doubt => self.rescaled(ray),
+            clear => clear,
+        };
         for root in 0..2 {
             if let Some(hit) = self.crossing(&rough, ray, within, root) {
                 each(hit);
@@ -240,7 +277,7 @@ impl Primitive for Sphere {
         let found = kernel::run(FindSurface { ray: &scaled, radius, root: hit.root() as usize });
         let local = found.local.scale_exact(exp2i(unit));
         let point = local.plus_f64(self.center);
-        let n = found.normal;
+        let n = found.local.high() / radius;
         let v = 0.5 + libm::atan2(n.y, sqrt(n.x * n.x + n.z * n.z)) * core::f64::consts::FRAC_1_PI;
         Surface::new(
             scaled.unscale(found.t).high,

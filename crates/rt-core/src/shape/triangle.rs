@@ -6,7 +6,7 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, LEAST_DENOMINATOR, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -121,10 +121,12 @@ impl Triangle {
         Some(at)
     }
 
+    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        if !ray.is_valid() {
+    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
+        if !ray.is_valid() || rough == within.min || rough == within.max {
             return None;
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
@@ -246,23 +248,24 @@ impl Primitive for Triangle {
         if certain && least < -doubt && most > doubt {
             return None;
         }
+        let n = self.normal * s;
+        let t = (n.x + n.y + n.z) / denominator;
         if certain && (least > doubt || most < -doubt) {
-            let n = self.normal * s;
-            let t = (n.x + n.y + n.z) / denominator;
             // As for the plane; the rounded normal adds u to both sums.
             let (n, q) = (n.abs(), (self.normal * d).abs());
-            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * (q.x + q.y + q.z));
+            let sizes = q.x + q.y + q.z;
+            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
             let from_min = (t - within.min).abs() * denominator.abs();
             let from_max = (t - within.max).abs() * denominator.abs();
             if from_min > slack
                 && from_max > slack
                 && slack > LEAST_CERTAIN
-                && denominator.abs() > LEAST_DENOMINATOR
+                && flat::crosses(denominator, sizes)
             {
                 return within.admit(t, 0, 0);
             }
         }
-        self.hit_exactly(ray, within)
+        self.hit_exactly(ray, within, t)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -276,7 +279,9 @@ impl Primitive for Triangle {
             // Only for a ray that this triangle gave no hit for.
             return Surface::new(hit.t(), self.a, DVec3::ZERO, self.unit_normal, self.reach);
         };
-        let point = at.point(self.a);
+        // The hit is inside; what double-double leaves beside the corners is noise.
+        let [a, b, c] = self.corners();
+        let point = at.point(a).clamp(a.min(b).min(c), a.max(b).max(c));
         let uv = run(Weights { at: &at, triangle: self });
         let surface =
             Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point)).with_uv(uv);

@@ -28,6 +28,8 @@ pub(super) struct Line {
     e1: Double,
     /// The leading coefficient: negative where the ray runs steeper than the side.
     pub a: Double,
+    /// The quadratic at the start: negative inside.
+    c: Double,
     /// The discriminant: positive where the line crosses the double cone.
     pub depth: Double,
     /// Entrance and exit of the side.
@@ -60,26 +62,32 @@ impl Task for FindLine<'_> {
 
         let z = f.axis.dot::<P>(start);
         let z_growth = f.axis.dot_f64::<P>(d);
-        let across = DoubleVector::from(d) - f.axis.mul::<P>(z_growth);
+        let mut across = DoubleVector::from(d) - f.axis.mul::<P>(z_growth);
+        // The axis is known to 2^-103: what is less than 2^-90 of the direction may be its error alone, and moves the
+        // ray by 2^-90 of the height between the caps.
+        if largest(across.high()) < exp2i(-90) {
+            across = DoubleVector::default();
+        }
         let away = start - f.axis.mul::<P>(z);
         let e0 = f.slope.mul::<P>(z) + f.base_radius * exp2i(-f.unit);
         let e1 = f.slope.mul::<P>(z_growth);
         let a = across.length_squared::<P>() - e1.square::<P>();
         let b = away.dot::<P>(across) - e0.mul::<P>(e1);
         let c = away.length_squared::<P>() - e0.square::<P>();
-        let x = across.mul::<P>(e0) - away.mul::<P>(e1);
-        let y = f.axis.dot::<P>(start.cross_f64::<P>(d));
-        let depth = x.length_squared::<P>() - y.square::<P>();
+        let depth = b.square::<P>() - a.mul::<P>(c);
         let root = depth.sqrt::<P>();
         // The larger root in size has no cancellation; the product of both is c / a.
-        let side = if b.high > 0.0 {
+        let side = if depth.high <= 0.0 {
+            // A double root, or none: then the closest approach, for hits that are known to exist.
+            [quotient::<P>(-b, a); 2]
+        } else if b.high > 0.0 {
             let q = -b - root;
             [quotient::<P>(q, a), c.div::<P>(q)]
         } else {
             let q = root - b;
-            if q.high == 0.0 { [Double::ZERO; 2] } else { [c.div::<P>(q), quotient::<P>(q, a)] }
+            [c.div::<P>(q), quotient::<P>(q, a)]
         };
-        Line { shift, start, z, z_growth, height: f.height, e1, a, depth, side }
+        Line { shift, start, z, z_growth, height: f.height, e1, a, c, depth, side }
     }
 }
 
@@ -137,6 +145,11 @@ impl Line {
     /// towards larger radii, and only leaves when it runs towards smaller ones. Then it always crosses (the
     /// discriminant is at least zero: through the apex it is zero); else only where the discriminant is positive.
     fn nappe(&self) -> Option<[Crossing; 2]> {
+        let end = |at, root| Crossing { at, part: SIDE, root };
+        if self.a.high == 0.0 && self.e1.high == 0.0 && self.c.high < 0.0 {
+            // Along the axis of a cylinder, inside.
+            return Some([end(-INFINITE, 0), end(INFINITE, 1)]);
+        }
         if !(self.depth.high > 0.0 || self.a.high < 0.0) {
             return None;
         }

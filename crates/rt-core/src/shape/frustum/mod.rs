@@ -23,7 +23,9 @@ use crate::double_vector::DoubleVector;
 use crate::frame::frame;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
-use crate::scaled::{Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, largest};
+use crate::scaled::{
+    Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, largest, range_guard,
+};
 use crate::{Aabb, Departure, Error, Hit, Interval, Ray, Side};
 use glam::DVec3;
 use line::{FindLine, Line};
@@ -76,7 +78,12 @@ impl Task for Measure {
         let own = exponent(largest(along.high()));
         let along = along.scale_exact(exp2i(-own));
         let length = along.length_squared::<P>().sqrt::<P>();
-        let axis = along.mul::<P>(Double::ONE.div::<P>(length));
+        // Quotients, not products with a reciprocal: an axis along a coordinate axis stays exact.
+        let axis = DoubleVector {
+            x: along.x.div::<P>(length),
+            y: along.y.div::<P>(length),
+            z: along.z.div::<P>(length),
+        };
         let growth = Double::difference(self.radii[1], self.radii[0]).scale_exact(exp2i(-own));
         let slope = growth.div::<P>(length);
         // The slope may be huge or tiny: divide by the larger of the two.
@@ -95,7 +102,7 @@ impl Task for Measure {
 impl Frustum {
     /// Checks and measures.
     ///
-    /// `names`: of the radii, for the error; a radius may be zero where the caller checked that not both are.
+    /// `names`: of the radii, for the error; the smaller radius, known to be zero or more, may be as small as it likes.
     pub fn new(
         base: DVec3,
         radii: [f64; 2],
@@ -105,11 +112,8 @@ impl Frustum {
     ) -> Result<Self, Error> {
         let base = checked_point("base", base)?;
         let top = checked_point("top", top)?;
-        for (name, radius) in names.into_iter().zip(radii) {
-            if radius != 0.0 {
-                checked_length(name, radius)?;
-            }
-        }
+        let larger = if radii[0] >= radii[1] { 0 } else { 1 };
+        checked_length(names[larger], radii[larger])?;
         if base == top {
             return Err(Error::Coincident { what: "base and top", value: base });
         }
@@ -126,7 +130,7 @@ impl Frustum {
             base_radius: radii[0],
             slope: slope.high,
             reach,
-            size: height.high + reach,
+            size: height.high + reach + range_guard(height.high) + range_guard(reach),
         };
         let height = height.scale_exact(exp2i(-unit));
         Ok(Frustum {
@@ -154,13 +158,10 @@ impl Frustum {
         Some((scaled, line))
     }
 
-    /// Entrance and exit as `f64` finds them, in the units of the given ray.
+    /// Entrance and exit as `f64` finds them.
     #[inline(always)]
     fn rough<const SLOPED: bool>(&self, ray: &Ray) -> Rough {
-        match self.numbers.span::<SLOPED>(ray.origin - self.base, ray.direction) {
-            Rough::Doubt => self.rescaled::<SLOPED>(ray),
-            clear => clear,
-        }
+        self.numbers.span::<SLOPED>(ray.origin - self.base, ray.direction)
     }
 
     /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
@@ -168,7 +169,7 @@ impl Frustum {
     #[cold]
     fn rescaled<const SLOPED: bool>(&self, ray: &Ray) -> Rough {
         let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else { return Rough::Miss };
-        let numbers = self.numbers.scaled(exp2i(-self.unit));
+        let numbers = self.numbers.scaled(exp2i(-self.unit), self.height.high);
         match numbers.span::<SLOPED>(scaled.relative.high(), scaled.direction) {
             Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
             other => other,
@@ -202,13 +203,26 @@ impl Frustum {
     /// See [`Primitive::hit`](crate::Primitive::hit). `SLOPED`: the radii differ.
     #[inline(always)]
     pub fn hit<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = self.rough::<SLOPED>(ray);
+        match self.rough::<SLOPED>(ray) {
+            Rough::Miss => None,
+            Rough::Doubt => self.hit_in_doubt::<SLOPED>(ray, within),
+            clear => self.crossing(&clear, ray, within, 0).or_else(|| self.crossing(&clear, ray, within, 1)),
+        }
+    }
+
+    /// The same where `f64` is in doubt.
+    #[cold]
+    fn hit_in_doubt<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = self.rescaled::<SLOPED>(ray);
         self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
     }
 
     /// See [`Primitive::crossings`](crate::Primitive::crossings).
     pub fn crossings<const SLOPED: bool>(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        let rough = self.rough::<SLOPED>(ray);
+        let rough = match self.rough::<SLOPED>(ray) {
+            Rough::Doubt => self.rescaled::<SLOPED>(ray),
+            clear => clear,
+        };
         for index in 0..2 {
             if let Some(hit) = self.crossing(&rough, ray, within, index) {
                 each(hit);

@@ -32,20 +32,15 @@ pub(super) struct Numbers {
     pub slope: f64,
     /// The larger radius.
     pub reach: f64,
-    /// At least height and radii.
+    /// At least height and radii; NaN where their squares would leave the range of the exponents.
     pub size: f64,
 }
 
 impl Numbers {
-    /// The same frustum in a unit `2^-power` times as large.
-    pub fn scaled(&self, power: f64) -> Numbers {
-        Numbers {
-            height: self.height * power,
-            base_radius: self.base_radius * power,
-            reach: self.reach * power,
-            size: self.size * power,
-            ..*self
-        }
+    /// The same frustum in another unit of length, in which its squares are in range; `height` is its height there.
+    pub fn scaled(&self, power: f64, height: f64) -> Numbers {
+        let reach = self.reach * power;
+        Numbers { height, base_radius: self.base_radius * power, reach, size: height + reach, ..*self }
     }
 
     /// The span of a line inside. `SLOPED` is false when both radii are the same: then the slope is not looked at.
@@ -64,12 +59,12 @@ impl Numbers {
         let mm = m.dot(m);
 
         let far = w.x.abs() + w.y.abs() + w.z.abs() + self.size;
-        if !(moderate(square) && moderate(far)) {
-            return Rough::Doubt;
-        }
         let spread = (1.0 + z_growth * z_growth * inverse) * exp2i(-48);
         let error = far * spread;
         let edge = self.reach + 2.0 * error;
+        if !moderate(square) {
+            return Rough::Doubt;
+        }
         if mm > edge * edge {
             return Rough::Miss;
         }

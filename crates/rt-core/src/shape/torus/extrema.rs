@@ -31,7 +31,7 @@ pub(super) fn outermost(p: f64, q: f64) -> f64 {
         y = (2.0 * square * y + size) / (3.0 * square + p);
     }
     // Both zero: all extrema fall together at the origin, and the step was 0 / 0.
-    if !(y > 0.0) {
+    if y.is_nan() {
         y = 0.0;
     }
     if q > 0.0 { -y } else { y }

@@ -4,8 +4,11 @@
 //! bound, and then no rounding can have changed the count; anything else is handed to double-double arithmetic.
 
 use super::Torus;
+use super::exact;
 use super::extrema::outermost;
-use crate::double::two_sum;
+use super::line::Line;
+use super::record::HIT_ERROR;
+use crate::double::{Double, two_sum};
 use crate::kernel::{Product, Task};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledRay, largest};
@@ -160,6 +163,11 @@ impl RoughLine {
         0.5 * (3.0 * x * x + self.p)
     }
 
+    /// The coefficients of the quartic, ascending, and rounded.
+    pub fn coefficients(&self, torus: &Torus) -> [f64; 5] {
+        [self.value(torus, 0.0).value, 4.0 * self.q, 2.0 * self.p, 0.0, 1.0]
+    }
+
     /// The parameter at the distance `x` from the closest approach.
     #[inline(always)]
     pub fn parameter_at(&self, x: f64) -> f64 {
@@ -171,8 +179,49 @@ impl RoughLine {
 #[derive(Clone, Copy, Debug)]
 struct Node {
     x: f64,
+    /// What `x` lacks, where the node is known to double-double accuracy.
+    low: f64,
+    /// NaN at the ends of the line, which are no extrema.
     value: f64,
+    /// Half the second derivative.
+    bend: f64,
     inside: bool,
+    sharp: bool,
+}
+
+impl Node {
+    #[inline(always)]
+    fn end(x: f64) -> Node {
+        Node { x, low: 0.0, value: f64::NAN, bend: f64::NAN, inside: false, sharp: false }
+    }
+
+    /// Where the parabola at the extremum is zero, as a distance from it; NaN for an end.
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        sqrt(-self.value / self.bend)
+    }
+}
+
+/// The extremum near `x` in double-double; `None` where its sign is still in doubt, or another extremum is so near
+/// that `f64` cannot keep them apart.
+#[inline(always)]
+fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
+    let mut c = Double::from(x);
+    let bend = 2.0 * (3.0 * x * x + line.p.high);
+    // The slope's roundings, 2^-47 of S^3, displace the extremum in f64 by twice that over the bend. Down to this bend
+    // that is at most 2^-36 S; Newton's step squares it, times 12 S over the bend, to 2^-58 S, and the value errs by
+    // the bend times the square of that: 2^-120.
+    if bend.abs() < exp2i(-10) * torus.reach * torus.reach {
+        return None;
+    }
+    let square = c.square::<P>();
+    let slope = (square + line.p).mul::<P>(c) + line.q;
+    c = c - slope.high / (0.5 * bend);
+    let value = line.value::<P>(c).0.high;
+    if value.abs() <= exact::uncertainty(torus, line, x) || value.is_nan() {
+        return None;
+    }
+    Some(Node { x: c.high, low: c.low, value, bend, inside: value < 0.0, sharp: true })
 }
 
 impl Task for Filter<'_> {
@@ -214,14 +263,26 @@ impl Task for Filter<'_> {
         };
 
         // All signs first: the count must be certain.
-        let outside = |x: f64| Node { x, value: f64::NAN, inside: false };
-        let mut nodes = [outside(-end), outside(end), outside(end), outside(end), outside(end)];
+        let mut nodes = [Node::end(-end), Node::end(end), Node::end(end), Node::end(end), Node::end(end)];
+        let mut precise = None;
         for (node, &x) in nodes[1..].iter_mut().zip(extrema.iter().take(count)) {
             let Value { value, error, .. } = line.value(torus, x);
-            if !(value.abs() > error) {
-                return Verdict::Doubt;
-            }
-            *node = Node { x, value, inside: value < 0.0 };
+            // The slope at a crossing next to this extremum is at least that of the parabola, 4 sqrt(value bend), or a
+            // quarter of it where the crossing is on the far side of an inflection; the crossing errs by the error
+            // over the slope, of which a quarter of what `surface` relies on is allowed. All this depends on the ray
+            // alone, never on the interval, and so does what is reported.
+            let bend = 4.0 * line.bend(x);
+            let certain =
+                value.abs() > error && 64.0 * error * error <= HIT_ERROR * HIT_ERROR * (value * bend).abs();
+            *node = if certain {
+                Node { x, low: 0.0, value, bend, inside: value < 0.0, sharp: false }
+            } else {
+                let precise = precise.get_or_insert_with(|| Line::of::<P>(torus, ray));
+                match sharpened::<P>(torus, precise, x) {
+                    Some(node) => node,
+                    None => return Verdict::Doubt,
+                }
+            };
         }
 
         let mut hits = Hits::NONE;
@@ -237,12 +298,7 @@ impl Task for Filter<'_> {
             if (line.parameter_at(high.x) + error_t) * unit <= within.min {
                 continue;
             }
-            let Some((x, slack)) = refine(torus, &line, &low, &high) else { return Verdict::Doubt };
-            let t = line.parameter_at(x) * unit;
-            let error = (error_t + slack * line.inverse) * unit;
-            if (t - within.min).abs() <= error || (t - within.max).abs() <= error {
-                return Verdict::Doubt;
-            }
+            let t = line.parameter_at(refine(torus, &line, &low, &high)) * unit;
             if let Some(hit) = within.admit(t, 0, index) {
                 if let Some(slot) = hits.list.get_mut(index as usize) {
                     *slot = Some(hit);
@@ -258,15 +314,17 @@ impl Task for Filter<'_> {
     }
 }
 
-/// The crossing between two nodes of different sign and how far it may be off; `None` if that is more than
-/// [`HIT_ERROR`](super::record::HIT_ERROR).
+/// The crossing between two nodes of different sign.
 #[inline(always)]
-fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> Option<(f64, f64)> {
+fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
+    let (from_low, from_high) = (low.reach(), high.reach());
+    let rising = from_high.is_nan() || from_low <= from_high;
+    let (near, offset) = if rising { (low, from_low) } else { (high, -from_high) };
+    if near.sharp {
+        return near.x + (near.low + beside(near, offset));
+    }
     let (mut a, mut b) = (low.x, high.x);
-    // Where the parabola at an extremum is zero; NaN for the ends, which are none.
-    let reach = |node: &Node| sqrt(-node.value / (4.0 * line.bend(node.x)));
-    let (from_low, from_high) = (reach(low), reach(high));
-    let mut x = if from_high.is_nan() || from_low <= from_high { a + from_low } else { b - from_high };
+    let mut x = near.x + offset;
     if !(x > a && x < b) {
         x = 0.5 * (a + b);
     }
@@ -282,19 +340,38 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> Option<(f
         let next = x - step;
         if next > a && next < b {
             x = next;
-            // The step leaves an error of step^2 f'' / (2 f'), by the series of f, and that of the value.
-            let left = (step * step * line.bend(x) / slope).abs();
-            let known = 0.25 * error / slope.abs();
-            if left <= 0.25 * known {
-                let slack = 2.0 * known;
-                return if slack <= super::record::HIT_ERROR { Some((x, slack)) } else { None };
+            // The step leaves an error of step^2 f'' / (2 f'), by the series of f; a twentieth of the value's own is
+            // enough.
+            if 80.0 * (step * step * line.bend(x)).abs() <= error {
+                break;
             }
-        } else if value == 0.0 || step.abs() <= 2.0 * U * x.abs() {
-            let slack = 0.5 * error / slope.abs() + step.abs();
-            return if slack <= super::record::HIT_ERROR { Some((x, slack)) } else { None };
+        } else if value.abs() <= error {
+            break;
         } else {
             x = 0.5 * (a + b);
         }
     }
-    None
+    x
+}
+
+/// How far from a sharp extremum the crossing next to it is, from the parabola's guess: the zero of the Taylor series
+/// `value + bend y^2 + 4 x y^3 + y^4`, which knows it to a few roundings of itself.
+#[inline(always)]
+fn beside(node: &Node, guess: f64) -> f64 {
+    let mut y = guess;
+    // The guess is off by a part of the order of y; each step squares that.
+    for _ in 0..8 {
+        let cubic = 4.0 * node.x + y;
+        let value = node.value + y * y * (node.bend + y * cubic);
+        let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
+        let step = value / slope;
+        if !step.is_finite() {
+            break;
+        }
+        y -= step;
+        if step.abs() <= exp2i(-30) * y.abs() {
+            break;
+        }
+    }
+    y
 }

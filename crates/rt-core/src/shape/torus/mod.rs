@@ -4,6 +4,7 @@ mod exact;
 mod extrema;
 mod filter;
 mod frame;
+mod leaving;
 mod line;
 mod record;
 
@@ -11,11 +12,13 @@ use crate::double::Double;
 use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
-use crate::scaled::{ScaledRay, admit, checked_length, checked_point, largest};
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use filter::{Filter, Verdict};
+use crate::poly::Roots;
+use crate::scaled::{ScaledRay, admit, checked_length, checked_point, largest, times_power};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+use filter::{Filter, RoughLine, Verdict};
 use frame::Frame;
 use glam::DVec3;
+use leaving::Leave;
 use line::Line;
 use record::{Near, Thorough};
 
@@ -154,6 +157,20 @@ impl Task for Squares {
     }
 }
 
+struct Approach<'a> {
+    torus: &'a Torus,
+    ray: &'a ScaledRay,
+}
+
+impl Task for Approach<'_> {
+    type Output = Option<RoughLine>;
+
+    #[inline(always)]
+    fn run<P: Product>(self) -> Option<RoughLine> {
+        RoughLine::new::<P>(self.torus, self.ray)
+    }
+}
+
 /// All crossings of the line in double-double, those inside the interval through `each` until that says stop.
 struct Walk<'a, F> {
     torus: &'a Torus,
@@ -181,6 +198,43 @@ impl<F: FnMut(Hit) -> bool> Task for Walk<'_, F> {
 }
 
 impl Torus {
+    /// The first crossing inside the interval, by another way of solving the quartic: for comparisons.
+    ///
+    /// `solver` gets the coefficients in ascending powers of `x^4 + 2 P x^2 + 4 Q x + c`, `x` being the distance from
+    /// the ray's closest approach to the centre in units of a power of two near the torus' size, and the interval
+    /// in which to look; every function of [`poly::quartic`](crate::poly::quartic) fits. The coefficients are
+    /// rounded and what is returned is what the solver finds: nothing is certified.
+    ///
+    /// ```
+    /// use rt_core::{Interval, Ray, poly::quartic, shape::Torus};
+    /// let torus = Torus::new([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 2.0, 0.5)?;
+    /// let ray = Ray::new([9.0, 0.5, 0.1], [-1.0, 0.0, 0.0]);
+    /// let hit = torus.hit_with(&ray, Interval::FORWARD, quartic::ferrari).unwrap();
+    /// assert!((hit.t() - 6.57).abs() < 0.01);
+    /// # Ok::<(), rt_core::Error>(())
+    /// ```
+    pub fn hit_with(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        solver: impl FnOnce([f64; 5], Interval) -> Roots<4>,
+    ) -> Option<Hit> {
+        let ray = self.scaled(ray)?;
+        let line = kernel::run(Approach { torus: self, ray: &ray })?;
+        let roots = solver(line.coefficients(self), Interval::LINE);
+        let mut index = 0;
+        for root in roots.iter() {
+            let t = times_power(line.parameter_at(root.x), ray.power);
+            if root.multiplicity % 2 == 1
+                && let Some(hit) = within.admit(t, 0, index)
+            {
+                return Some(hit);
+            }
+            index += root.multiplicity;
+        }
+        None
+    }
+
     #[cold]
     fn first_exact(&self, ray: &ScaledRay, within: Interval) -> Option<Hit> {
         let mut first = None;
@@ -245,4 +299,27 @@ impl Primitive for Torus {
         let grown = reach + (self.center.abs() + reach) * (2.0 * UNIT);
         Some(Aabb::new(self.center - grown, self.center + grown))
     }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        let ray = self.scaled(ray)?;
+        let mut first = None;
+        let each = |hit| {
+            first = Some(hit);
+            false
+        };
+        kernel::run(Leave { torus: self, ray: &ray, within, from, first: true, each });
+        first
+    }
+
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        let Some(ray) = self.scaled(ray) else { return };
+        let each = |hit| {
+            each(hit);
+            true
+        };
+        kernel::run(Leave { torus: self, ray: &ray, within, from, first: false, each });
+    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -33,7 +33,7 @@ impl Task for Near<'_> {
         let line = Line::of::<P>(self.torus, self.ray);
         let t = Double::from(times_power(self.hit.t(), -self.ray.power));
         let mut x = line.distance::<P>(t);
-        if !(x.high.abs() <= 2.0 * self.torus.reach) {
+        if x.high.abs() > 2.0 * self.torus.reach || x.high.is_nan() {
             return None;
         }
         let (value, slope) = line.value::<P>(x);
