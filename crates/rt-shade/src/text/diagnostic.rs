@@ -199,6 +199,26 @@ fn window(line: &str, before: usize, marked: usize) -> (String, Range<usize>) {
     (source, start..(start + marked).min(shown.max(start + 1)))
 }
 
+/// The error's own words, with numbers of very many digits in the form `1e308`.
+pub(crate) fn in_words(error: &dyn fmt::Display) -> String {
+    let text = error.to_string();
+    let of_number = |c: char| c.is_ascii_digit() || c == '.';
+    let mut words = String::with_capacity(text.len());
+    let mut rest = text.as_str();
+    while let Some(start) = rest.find(of_number) {
+        let length = rest[start..].find(|c| !of_number(c)).unwrap_or(rest.len() - start);
+        let (before, number) = (&rest[..start], &rest[start..start + length]);
+        words.push_str(before);
+        match number.parse::<f64>() {
+            // No f64 has more than 17 significant digits.
+            Ok(value) if length > 24 => words.push_str(&format!("{value:e}")),
+            _ => words.push_str(number),
+        }
+        rest = &rest[start + length..];
+    }
+    words + rest
+}
+
 /// Control characters could do anything to a terminal.
 fn printable(c: char) -> char {
     if c.is_control() && c != '\t' { '\u{fffd}' } else { c }
@@ -236,6 +256,15 @@ mod tests {
         // The line feed itself, and within a character.
         assert_eq!(one("ab\r\ncd", 3..4).line, 1);
         assert_eq!(one("äb", 1..2).column, 2);
+    }
+
+    #[test]
+    fn huge_and_tiny_numbers_stay_readable() {
+        let of = |value: f64| in_words(&format!("radius must be less than 1.5, got {value}."));
+        assert_eq!(of(-1e308), "radius must be less than 1.5, got -1e308.".replace("308.", "308") + ".");
+        assert_eq!(of(2.5e-310), "radius must be less than 1.5, got 2.5e-310.");
+        assert_eq!(of(0.1 + 0.2), "radius must be less than 1.5, got 0.30000000000000004.");
+        assert_eq!(in_words(&"no number"), "no number");
     }
 
     #[test]

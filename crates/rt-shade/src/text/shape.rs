@@ -17,6 +17,7 @@
 //!
 //! Nothing has a default but the vertex normals of a triangle (without them it is flat).
 
+use super::diagnostic::in_words;
 use super::suggest;
 use rt_core::glam::DVec3;
 use rt_core::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
@@ -263,49 +264,43 @@ pub(super) fn check(kind: &str, fields: &[(&str, Value)]) -> Result<Checked, Vec
     if problems.is_empty() { Ok(Checked { kind, values }) } else { Err(problems) }
 }
 
+/// The fields that are directions.
+const DIRECTIONS: [&str; 5] = ["axis", "normal", "na", "nb", "nc"];
+
 /// The constructor's complaint at the field that carries the offending value.
 fn explain(kind: &str, fields: &[(&str, Value)], error: &Error) -> Problem {
-    let is = |v: DVec3, value: DVec3| v.to_array().map(f64::to_bits) == value.to_array().map(f64::to_bits);
-    let number = |value: f64| {
-        let mut found = fields.iter().enumerate().filter(|(_, f)| match f.1 {
-            Value::Number(x) => x.to_bits() == value.to_bits(),
-            Value::Vector(v) => v.to_array().iter().any(|x| x.to_bits() == value.to_bits()),
-            Value::Other(_) => false,
-        });
-        let first = found.next()?.0;
-        Some((first, found.next().is_none()))
+    let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+    let holds = |value: &Value, wanted: f64| match value {
+        Value::Number(x) => same(*x, wanted),
+        Value::Vector(v) => v.to_array().iter().any(|x| same(*x, wanted)),
+        Value::Other(_) => false,
     };
-    let vector = |value: DVec3| {
-        let mut found =
-            fields.iter().enumerate().filter(|(_, f)| matches!(f.1, Value::Vector(v) if is(v, value)));
-        let first = found.next()?.0;
-        Some((first, found.next().is_none()))
+    let is = |value: &Value, wanted: DVec3| match value {
+        Value::Vector(v) => v.to_array().into_iter().zip(wanted.to_array()).all(|(x, y)| same(x, y)),
+        _ => false,
     };
     // Of several fields with the offending value the one that the message names.
-    let named = |what: &str| {
-        fields
-            .iter()
-            .position(|f| what == f.0 || what.ends_with(&f.0.replace('_', " ")) || what.ends_with(f.0))
-    };
-    let pick = |found: Option<(usize, bool)>, what: &str| match found {
-        Some((index, true)) => Some(index),
-        Some((index, false)) => named(what).or(Some(index)),
-        None => named(what),
+    let pick = |what: &str, fits: &dyn Fn(&str, &Value) -> bool| {
+        let named = |key: &str| what.ends_with(&key.replace('_', " ")) || what.ends_with(key);
+        let places = || (0..fields.len()).filter(|&index| fits(fields[index].0, &fields[index].1));
+        places().find(|&index| named(fields[index].0)).or_else(|| places().next())
     };
     let index = match error {
         Error::NotPositive { what, value }
         | Error::Negative { what, value }
-        | Error::OutOfRange { what, value } => pick(number(*value), what),
-        Error::NotFinite { what, value } | Error::ZeroLength { what, value } => pick(vector(*value), what),
-        // The second of the two points.
-        Error::Coincident { value, .. } => {
-            fields.iter().rposition(|f| matches!(f.1, Value::Vector(v) if v == *value))
+        | Error::OutOfRange { what, value } => pick(what, &|_, given| holds(given, *value)),
+        Error::NotFinite { what, value } => pick(what, &|_, given| is(given, *value)),
+        Error::ZeroLength { what, value } => {
+            pick(what, &|key, given| DIRECTIONS.contains(&key) && is(given, *value))
         }
+        // The second of the two points.
+        Error::Coincident { value, .. } => fields.iter().rposition(|f| is(&f.1, *value)),
         Error::Unordered { .. } => fields.iter().position(|f| f.0 == "max"),
         _ => None,
     };
-    let text = error.to_string();
-    let message = if text.contains(kind) { text } else { format!("{kind}: {text}") };
+    let text = in_words(error);
+    let says_which = text.contains(kind.trim_start_matches("open_"));
+    let message = if says_which { text } else { format!("{kind} {text}") };
     Problem { place: index.map_or(Place::Table, Place::Value), message }
 }
 

@@ -1,10 +1,11 @@
 //! Reads the entities of an NFF file and makes the scene.
 
-use super::super::diagnostic::Report;
+use super::super::diagnostic::{Report, in_words};
 use super::super::suggest;
 use super::super::{Diagnostics, Loaded};
 use super::polygon::{MOST_VERTICES, triangulate};
 use super::token::{Token, Tokens};
+use crate::light::check_color;
 use crate::{
     Attenuation, Camera, Color, Light, Material, Object, Optics, Paint, Scene, SceneBuilder, Settings,
 };
@@ -78,7 +79,7 @@ impl<'a> Reader<'a> {
             "v" => self.view(token),
             "b" => self.background(),
             "l" => self.light(token),
-            "f" => self.fill(token),
+            "f" => self.fill(),
             "s" => self.sphere(token),
             "c" => self.cone(token),
             "p" => self.polygon(token, false),
@@ -130,11 +131,17 @@ impl<'a> Reader<'a> {
     }
 
     fn color(&mut self, what: &'static str) -> Result<Color, Reported> {
-        let place = self.tokens.place();
-        let color = Color::from(self.vector(what)?.to_array());
-        let checked = crate::light::check_color(what, color);
-        self.checked(checked, place)?;
-        Ok(color)
+        let mut channels = [0.0; 3];
+        for channel in &mut channels {
+            let place = self.tokens.place();
+            *channel = self.number(what)?;
+            if check_color(what, Color::gray(*channel)).is_err() {
+                let message = format!("{what} must have channels from 0 to 1e30, got {}", in_words(channel));
+                self.report.error(place, message);
+                return Err(Reported);
+            }
+        }
+        Ok(channels.into())
     }
 
     /// A whole number within the range.
@@ -160,9 +167,13 @@ impl<'a> Reader<'a> {
     }
 
     /// The value, or the error at this place.
-    fn checked<T, E: ToString>(&mut self, result: Result<T, E>, place: Range<usize>) -> Result<T, Reported> {
+    fn checked<T, E: std::fmt::Display>(
+        &mut self,
+        result: Result<T, E>,
+        place: Range<usize>,
+    ) -> Result<T, Reported> {
         result.map_err(|error| {
-            self.report.error(place, error.to_string());
+            self.report.error(place, in_words(&error));
             Reported
         })
     }
@@ -239,12 +250,14 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn fill(&mut self, token: Token) -> Result<(), Reported> {
+    fn fill(&mut self) -> Result<(), Reported> {
         // Objects after a wrong fill are not reported as having none.
         self.fill = Some(self.fill.unwrap_or(0));
         let mut numbers = [0.0; 8];
         let mut bits = [0; 8];
+        let mut places: [Range<usize>; 8] = Default::default();
         for (index, what) in FILL.into_iter().enumerate() {
+            places[index] = self.tokens.place();
             numbers[index] = self.number(what)?;
             bits[index] = numbers[index].to_bits();
         }
@@ -264,7 +277,9 @@ impl<'a> Reader<'a> {
             ior: (transmit > 0.0 && ior != 0.0).then_some(ior),
             optics: Optics::Plain,
         };
-        self.checked(material.check(), token.span())?;
+        let checked = material.check();
+        let place = checked.as_ref().err().map_or(0, |error| wrong_number(error, numbers));
+        self.checked(checked, places[place].clone())?;
         let index = self.scene.add_material(material);
         self.fills.insert(bits, index);
         self.fill = Some(index);
@@ -377,6 +392,21 @@ impl<'a> Reader<'a> {
                 self.report.finish_failed()
             }
         }
+    }
+}
+
+/// Which of a fill's numbers the error is about.
+fn wrong_number(error: &crate::Error, numbers: [f64; 8]) -> usize {
+    match error {
+        crate::Error::Color { what: "transmit", .. } | crate::Error::Number { what: "transmit", .. } => 6,
+        crate::Error::Color { .. } => {
+            numbers[..3].iter().position(|c| check_color("color", Color::gray(*c)).is_err()).unwrap_or(0)
+        }
+        crate::Error::Number { what: "diffuse", .. } => 3,
+        crate::Error::Number { what: "shininess", .. } => 5,
+        crate::Error::Number { what: "ior", .. } => 7,
+        // What is left is both highlight and mirror.
+        _ => 4,
     }
 }
 

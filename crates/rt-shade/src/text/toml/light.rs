@@ -25,9 +25,10 @@ pub(super) fn light(node: Node, report: &mut Report) -> Option<Light> {
             let light = Light::spot(position?, target?, inner?, outer?, color?, attenuation?);
             blame(light, &table, report)
         }
-        (Some(_), Some(spot)) => {
-            let message = "a light is either `point` or `spot`: write another [[light]] for the second";
-            report.error(spot.key.span(), message);
+        (Some(point), Some(spot)) => {
+            let second = point.key.span().start.max(spot.key.span().start);
+            let message = "a light is either `point` or `spot`: write another [[light]] for this one";
+            report.error(second..second + 5, message);
             None
         }
         (None, None) => {

@@ -124,8 +124,10 @@ fn material(node: Node, textures: &Names, report: &mut Report) -> Option<Materia
         blame(checked, &table, report);
         set(&mut material, number);
     }
-    if let Some(color) = table.get("transmit").and_then(|n| color(n, report)) {
-        material.transmit = color;
+    if let Some(transmit) = table.get("transmit").and_then(|n| color(n, report)) {
+        let checked = Material { transmit, ..Material::default() }.check();
+        blame(checked, &table, report);
+        material.transmit = transmit;
     }
     if let Some(color) = table.get("color").and_then(|n| color(n, report)) {
         material.paint = Paint::Color(color);

@@ -4,9 +4,10 @@ mod light;
 mod material;
 mod object;
 
-use super::diagnostic::Report;
+use super::diagnostic::{Report, in_words};
 use super::reader::{Node, Table};
 use super::{Diagnostics, Loaded, PictureLoader};
+use crate::light::check_color;
 use crate::{Antialias, Camera, Color, Error, Scene, SceneBuilder, Settings};
 use ::toml::de::DeTable;
 use rt_core::glam::DVec3;
@@ -138,20 +139,18 @@ fn camera(node: Node, report: &mut Report) -> Option<Camera> {
     blame(camera, &table, report)
 }
 
-/// Three channels, each at least 0.
+/// Three legal channels, each checked by itself so that the wrong one is marked.
 fn color(node: Node, report: &mut Report) -> Option<Color> {
-    let color = Color::from(node.vector(report)?.to_array());
-    let checked = crate::light::check_color("color", color);
-    match checked {
-        Ok(()) => Some(color),
-        Err(_) => {
-            let (name, channels) = (node.name(), [color.r, color.g, color.b]);
-            let bad = channels.iter().position(|c| *c < 0.0).unwrap_or(0);
-            let message = format!("`{name}` must have channels of at least 0, got {}", channels[bad]);
-            report.error(node.element(bad), message);
-            None
+    let channels = node.vector(report)?.to_array();
+    for (index, channel) in channels.into_iter().enumerate() {
+        if check_color("color", Color::gray(channel)).is_err() {
+            let (name, channel) = (node.name(), in_words(&channel));
+            let message = format!("`{name}` must have channels from 0 to 1e30, got {channel}");
+            report.error(node.element(index), message);
+            return None;
         }
     }
+    Some(channels.into())
 }
 
 /// The value, or the error at the field of the table that it is about.
@@ -176,7 +175,7 @@ fn blame<T>(result: Result<T, Error>, table: &Table, report: &mut Report) -> Opt
         _ => String::new(),
     };
     let place = table.get(key).map_or(table.place.clone(), |node| node.place());
-    report.error(place, format!("{error}{hint}"));
+    report.error(place, format!("{}{hint}", in_words(&error)));
     None
 }
 

@@ -1,6 +1,6 @@
 //! `[[object]]`: a shape with its material, scaled, turned and moved.
 
-use super::super::diagnostic::Report;
+use super::super::diagnostic::{Report, in_words};
 use super::super::reader::{Node, Table};
 use super::super::shape::{Place, Value, check, make};
 use super::material::{Names, named};
@@ -24,6 +24,7 @@ pub(super) fn object(node: Node, materials: &Names, scene: &mut SceneBuilder, re
             Err(error) => {
                 let moved = ["scale", "translate", "rotate"].iter().find_map(|key| table.get(key));
                 let place = moved.map_or(table.place, |node| node.place());
+                let error = in_words(&error);
                 report.error(place, format!("scaled, turned and moved the shape is not legal: {error}"));
                 return;
             }
@@ -61,7 +62,7 @@ fn rotated(node: Node, before: Similarity, report: &mut Report) -> Option<Simila
 }
 
 fn place<T>(node: Node, result: Result<T, rt_core::Error>, report: &mut Report) -> Option<T> {
-    result.map_err(|error| report.error(node.place(), error.to_string())).ok()
+    result.map_err(|error| report.error(node.place(), in_words(&error))).ok()
 }
 
 fn shape(node: Node, report: &mut Report) -> Option<Shape> {
