@@ -1,4 +1,4 @@
-//! Scenes as text: TOML, and the Neutral File Format (NFF, see [`load_nff`]).
+//! Scenes as text: TOML, and the Neutral File Format (NFF, see [`nff`]).
 //!
 //! [`load`] chooses by the ending of the file's name. Every error of a file is found in one go ([`Diagnostics`]): with
 //! its place, the source line, and a word on how to mend it.
@@ -51,7 +51,7 @@
 //! | | `size` | width of one picture on a plane and a disk | 1 |
 
 mod diagnostic;
-mod nff;
+pub mod nff;
 mod picture;
 mod reader;
 pub mod shape;
