@@ -53,6 +53,13 @@ impl Output {
             return Ok(Output::Stdout);
         }
         let failed = |source| Failure::File { action: "write", path: path.into(), source };
+        if path == Path::new("/dev/stdout") {
+            return Ok(Output::Stdout);
+        }
+        // `/dev/fd/3` and its like lead to open files, which a rename would take away from their other writers.
+        if path.starts_with("/dev") && fs::metadata(path).is_ok_and(|found| !found.is_dir()) {
+            return Ok(Output::Device(path.into()));
+        }
         let target = follow_links(path).map_err(failed)?;
         match fs::metadata(&target) {
             Ok(found) if found.is_dir() => return Err(failed(io::ErrorKind::IsADirectory.into())),
@@ -89,7 +96,7 @@ impl Output {
                 stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(Failure::stdout)
             }
             Output::Device(path) => {
-                let write = || OpenOptions::new().write(true).open(path)?.write_all(bytes);
+                let write = || OpenOptions::new().append(true).open(path)?.write_all(bytes);
                 write().map_err(Failure::file("write", path))
             }
             Output::File { shown, path } => {

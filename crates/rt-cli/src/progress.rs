@@ -37,6 +37,7 @@ enum Show {
 }
 
 struct Last {
+    done: u64,
     tenth: u64,
     time: Instant,
 }
@@ -55,7 +56,7 @@ impl Listener {
             Mode::Auto => Show::Plain(Duration::from_secs(1)),
         };
         let start = Instant::now();
-        Listener { show, start, last: Mutex::new(Last { tenth: 0, time: start }) }
+        Listener { show, start, last: Mutex::new(Last { done: 0, tenth: 0, time: start }) }
     }
 
     /// Ends the display.
@@ -70,16 +71,17 @@ impl Listener {
         matches!(self.show, Show::Bar(_) | Show::Plain(_))
     }
 
-    /// Whether `done` of `total` deserves a line, and notes that it was written. `every` in tenths of the whole.
-    fn due(&self, done: u64, total: u64, least: Duration, most: Duration) -> bool {
-        let Ok(mut last) = self.last.lock() else { return false };
+    /// Writes a line when `done` of `total` is worth one: at each tenth, but not within `least` of the line before,
+    /// and after `most` at any rate. Threads may report out of order; lines never go back.
+    fn line(&self, done: u64, total: u64, [least, most]: [Duration; 2], text: impl FnOnce() -> String) {
+        let Ok(mut last) = self.last.lock() else { return };
         let tenth = 10 * done / total.max(1);
         let since = last.time.elapsed();
-        let due = (tenth > last.tenth && since >= least) || since >= most;
-        if due {
-            *last = Last { tenth, time: Instant::now() };
+        if done > last.done && ((tenth > last.tenth && since >= least) || since >= most) {
+            *last = Last { done, tenth, time: Instant::now() };
+            // When standard error is closed nobody looks on; the rendering goes on.
+            let _ = writeln!(std::io::stderr(), "{}", text());
         }
-        due
     }
 }
 
@@ -106,7 +108,6 @@ impl Progress for Listener {
         let elapsed = self.start.elapsed();
         let left = elapsed.as_secs_f64() * (total.saturating_sub(done)) as f64 / done.max(1) as f64;
         let percent = 100 * done / total.max(1);
-        // When standard error is closed nobody looks on; the rendering goes on.
         match &self.show {
             Show::Nothing => {}
             Show::Bar(bar) => {
@@ -114,22 +115,17 @@ impl Progress for Listener {
                 bar.set_position(done);
                 bar.set_message(rate(rays, elapsed));
             }
-            Show::Plain(least) => {
-                if self.due(done, total, *least, Duration::from_secs(30)) {
-                    let rate = rate(rays, elapsed);
-                    let _ = writeln!(std::io::stderr(), "{percent}% done, {rate}, {left:.0} s left");
-                }
-            }
-            Show::Json => {
-                if self.due(done, total, Duration::ZERO, Duration::from_secs(1)) {
-                    let per_second = rays as f64 / elapsed.as_secs_f64().max(1e-9);
-                    let line = serde_json::json!({
-                        "done": done, "total": total, "percent": percent, "rays": rays,
-                        "rays_per_s": per_second.round(), "elapsed_s": elapsed.as_secs_f64(), "left_s": left,
-                    });
-                    let _ = writeln!(std::io::stderr(), "{line}");
-                }
-            }
+            Show::Plain(least) => self.line(done, total, [*least, Duration::from_secs(30)], || {
+                format!("{percent}% done, {}, {left:.0} s left", rate(rays, elapsed))
+            }),
+            Show::Json => self.line(done, total, [Duration::ZERO, Duration::from_secs(1)], || {
+                let per_second = rays as f64 / elapsed.as_secs_f64().max(1e-9);
+                let line = serde_json::json!({
+                    "done": done, "total": total, "percent": percent, "rays": rays,
+                    "rays_per_s": per_second.round(), "elapsed_s": elapsed.as_secs_f64(), "left_s": left,
+                });
+                line.to_string()
+            }),
         }
     }
 
@@ -144,13 +140,22 @@ mod tests {
 
     #[test]
     fn a_line_for_each_tenth_and_no_more() {
-        let listener = Listener::new(Mode::Plain, false);
         let hour = Duration::from_secs(3600);
-        let lines = (1..=1000).filter(|&done| listener.due(done, 1000, Duration::ZERO, hour)).count();
-        assert_eq!(lines, 10);
-        let listener = Listener::new(Mode::Plain, false);
-        assert_eq!((1..=1000).filter(|&done| listener.due(done, 1000, hour, hour)).count(), 0);
-        assert!(!listener.due(0, 0, Duration::ZERO, hour));
+        let count = |reports: &mut dyn Iterator<Item = u64>, total: u64, least: Duration| {
+            let (listener, mut lines) = (Listener::new(Mode::Plain, true), 0);
+            for done in reports {
+                listener.line(done, total, [least, hour], || {
+                    lines += 1;
+                    format!("test: {done} of {total}")
+                });
+            }
+            lines
+        };
+        assert_eq!(count(&mut (1..=1000), 1000, Duration::ZERO), 10);
+        assert_eq!(count(&mut (1..=1000), 1000, hour), 0);
+        // The last two tiles are reported the wrong way round.
+        assert_eq!(count(&mut [6, 5, 7, 6].into_iter(), 7, Duration::ZERO), 2);
+        assert_eq!(count(&mut [0].into_iter(), 0, Duration::ZERO), 0);
     }
 
     #[test]

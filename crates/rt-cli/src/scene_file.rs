@@ -21,7 +21,7 @@ pub struct Loaded {
     pub hash: u64,
     /// How long reading, parsing and checking took.
     pub load: Duration,
-    /// How long the acceleration structure took, where it is built apart.
+    /// How long the acceleration structure took.
     pub build: Duration,
 }
 
@@ -47,7 +47,8 @@ pub fn load(path: &Path) -> Result<Loaded, Failure> {
     let loaded = text::load(&name, &bytes, &pictures);
     let text::Loaded { scene, settings, .. } = loaded.map_err(|errors| Failure::Input(errors.to_string()))?;
     let hash = crate::place::mix(crate::place::EMPTY_HASH, &bytes);
-    Ok(Loaded { scene, settings, hash, load: start.elapsed(), build: Duration::ZERO })
+    let build = scene.build_time();
+    Ok(Loaded { scene, settings, hash, load: start.elapsed().saturating_sub(build), build })
 }
 
 fn read_at_most(mut from: impl Read, most: u64) -> io::Result<Vec<u8>> {

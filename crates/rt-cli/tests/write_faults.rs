@@ -227,3 +227,17 @@ fn stats_that_cannot_be_written_stop_the_rendering() {
     assert!(outcome.took.as_secs() < 10);
     assert_eq!(workshop.read("out.png"), OLD);
 }
+
+#[test]
+fn a_redirected_stream_keeps_what_else_is_written_to_it() {
+    let workshop = Workshop::new();
+    let script = format!(
+        "{{ echo before; '{}' render scene.toml -o a.png -q --stats /dev/stdout; echo after; }} > log",
+        env!("CARGO_BIN_EXE_rt")
+    );
+    let outcome =
+        support::run(Command::new("bash").current_dir(workshop.folder()).args(["-c", &script]), b"");
+    assert_eq!(outcome.code(), 0, "{outcome:?}");
+    let log = String::from_utf8(workshop.read("log")).unwrap();
+    assert!(log.starts_with("before\n{") && log.ends_with("}\nafter\n"), "{log}");
+}

@@ -158,11 +158,38 @@ fn all_crossings(geometry: &Geometry, ray: &Ray, within: Interval) -> Vec<Found>
     all
 }
 
+/// Each ray and its neighbours, of which there are enough for packets.
+fn compare_batches(geometry: &Geometry, rays: &[(Ray, Interval)]) -> Result<(), TestCaseError> {
+    let mut all = Vec::new();
+    let mut within = Vec::new();
+    for (ray, interval) in rays {
+        all.push(*ray);
+        within.push(*interval);
+    }
+    for (ray, interval) in rays.iter().take(4) {
+        let side = ray.direction.any_orthogonal_vector() * 0.003;
+        for i in 0..37 {
+            all.push(Ray::new(ray.origin, ray.direction + side * f64::from(i)));
+            within.push(*interval);
+        }
+    }
+    let mut found = vec![None; all.len()];
+    let mut occluded = vec![false; all.len()];
+    geometry.nearest_many(&all, &within, &mut found);
+    geometry.occluded_many(&all, &within, &mut occluded);
+    for (i, ray) in all.iter().enumerate() {
+        prop_assert_eq!(found[i], geometry.nearest(ray, within[i]), "{:?} {:?}", ray, within[i]);
+        prop_assert_eq!(occluded[i], found[i].is_some());
+    }
+    Ok(())
+}
+
 fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
     let (fast, plain) = scene.geometries();
     let rays: Vec<(Ray, Interval)> = casts.iter().map(|cast| cast.ray(scene)).collect();
     for level in [Level::Portable, Level::Avx2] {
         set_level(level);
+        compare_batches(&fast, &rays)?;
         for (ray, within) in &rays {
             let found = plain.nearest(ray, *within);
             prop_assert_eq!(fast.nearest(ray, *within), found, "nearest {:?} {:?}", ray, within);

@@ -9,6 +9,7 @@ use rt_core::glam::DVec3;
 use rt_core::{Geometry, GeometryBuilder, Interval, Ray, Shape};
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// What is known of an object beside its shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,6 +41,8 @@ pub struct Scene {
     pub(crate) mappings: Vec<Mapping>,
     /// The media that the eye is in.
     pub(crate) around_eye: Vec<Medium>,
+    /// How long the acceleration structure took.
+    pub(crate) build_time: Duration,
 }
 
 /// What an object leaves of the light of a lamp at each crossing.
@@ -87,6 +90,11 @@ impl Scene {
     /// The shapes, ready for rays.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
+    }
+
+    /// How long [`SceneBuilder::build`] took to make the acceleration structure.
+    pub fn build_time(&self) -> Duration {
+        self.build_time
     }
 
     /// What rays see that hit nothing.
@@ -228,7 +236,9 @@ impl SceneBuilder {
         });
         let blocks: Vec<Blocks> = blocks.collect();
         let all_opaque = blocks.iter().all(|&blocks| blocks == Blocks::All);
+        let start = Instant::now();
         let geometry = self.geometry.build();
+        let build_time = start.elapsed();
         let mappings = geometry.shapes().iter().map(|shape| match shape {
             Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
             Shape::Torus(_) => Mapping::Ring,
@@ -249,6 +259,7 @@ impl SceneBuilder {
             all_opaque,
             mappings,
             around_eye,
+            build_time,
         })
     }
 }

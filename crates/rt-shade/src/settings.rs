@@ -24,7 +24,7 @@ pub enum Antialias {
 
 impl Antialias {
     /// The adaptive way with its default threshold and depth.
-    pub const ADAPTIVE: Antialias = Antialias::Adaptive { threshold: 0.05, depth: 3 };
+    pub const ADAPTIVE: Antialias = Antialias::Adaptive { threshold: 0.05, depth: 2 };
     /// The largest `n` of [`Antialias::Grid`].
     pub const MOST_GRID: u32 = 64;
     /// The largest depth of [`Antialias::Adaptive`].

@@ -101,7 +101,9 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     build_node(items, 0, whole, &mut nodes);
     number_by_kind(items, &mut nodes);
     nodes.shrink_to_fit();
-    Tree { nodes }
+    let size = |item: &Item| (0..3).map(|k| f64::from(item.max[k] - item.min[k])).sum::<f64>() / 3.0;
+    let box_size = items.iter().map(size).sum::<f64>() / items.len() as f64;
+    Tree { nodes, box_size }
 }
 
 /// Adds the node of `whole`, whose items are `items`, which begin at `offset` among all.
@@ -194,7 +196,7 @@ fn build_children_in_parallel(
 
 /// Splits a part with at least two items; they are put in the order of the halves.
 fn split(items: &mut [Item], part: Part) -> (Part, Part) {
-    let plane = if part.depth < MOST_DEPTH_OF_HEURISTIC { best_plane(items, &part.bounds) } else { None };
+    let plane = if part.depth < MOST_DEPTH_OF_HEURISTIC { best_plane(items) } else { None };
     let (middle, left, right) = match plane {
         Some(plane) => {
             let mut middle = 0;
@@ -260,7 +262,7 @@ impl Plane {
 }
 
 /// The plane of least cost, if the centres differ.
-fn best_plane(items: &[Item], bounds: &Bounds) -> Option<Plane> {
+fn best_plane(items: &[Item]) -> Option<Plane> {
     let mut centers = Bounds::EMPTY;
     for item in items {
         let middle = Bounds::of(item).middle();
@@ -308,7 +310,6 @@ fn best_plane(items: &[Item], bounds: &Bounds) -> Option<Plane> {
             }
         }
     }
-    let _ = bounds;
     let (_, axis, bin) = best?;
     let side = |range: core::ops::Range<usize>| {
         range.fold(Bounds::EMPTY, |mut all, bin| {

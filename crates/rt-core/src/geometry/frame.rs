@@ -52,7 +52,7 @@ impl LocalRay {
 /// distance is at most sqrt(3) (|o'| + 1), the size of the shape at most 2 sqrt(3). Two such errors are less than
 /// 2^-32 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
 /// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
     absolute: f64,
 }
@@ -168,7 +168,7 @@ impl Frame {
 
 impl LocalRay {
     /// Stands for a ray that kernel coordinates cannot hold: it meets every box.
-    const EVERYWHERE: LocalRay = LocalRay {
+    pub const EVERYWHERE: LocalRay = LocalRay {
         origin: DVec3::ZERO,
         error: DVec3::INFINITY,
         direction: DVec3::ONE,

@@ -9,10 +9,13 @@
 //! roundings could have exchanged them, the order is that of their refined parameters ([`Surface::t`]); at equal ones,
 //! leaving a solid comes before entering one (`direction . normal > 0` first), then the order of adding.
 
+mod batch;
 mod builder;
 mod frame;
+mod packet;
 mod query;
 mod store;
+mod stream;
 mod traverse;
 mod tree;
 
@@ -195,13 +198,20 @@ impl Geometry {
             }
             return ControlFlow::Continue(());
         }
-        for run in &self.apart {
-            self.store.visit(*run, ray, query)?;
-        }
+        self.ask_apart(ray, query)?;
         match local {
             Some(local) => traverse(lanes, &self.tree, &self.store, ray, local, query),
             None => ControlFlow::Continue(()),
         }
+    }
+
+    /// Shows the query the shapes outside the tree.
+    #[inline(always)]
+    fn ask_apart<Q: Query>(&self, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
+        for run in &self.apart {
+            self.store.visit(*run, ray, query)?;
+        }
+        ControlFlow::Continue(())
     }
 
     /// The first of the hits within an interval in which several objects are hit, too close to be sure.

@@ -1,6 +1,7 @@
 //! The shapes by kind, each kind in the order of the leaves: what a ray touches, without the width of [`Shape`].
 
 use super::query::Query;
+use crate::kernel::Lanes;
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
 use crate::{Primitive, Ray, Shape};
 use alloc::sync::Arc;
@@ -41,6 +42,14 @@ impl<P: Primitive> Column<P> {
 
     fn bytes(&self) -> usize {
         self.shapes.capacity() * size_of::<P>() + self.objects.capacity() * size_of::<u32>()
+    }
+
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, lanes: L, first: usize) {
+        if let (Some(shape), Some(object)) = (self.shapes.get(first), self.objects.get(first)) {
+            lanes.prefetch(shape);
+            lanes.prefetch(object);
+        }
     }
 
     #[inline(always)]
@@ -97,6 +106,15 @@ macro_rules! store {
             /// The bytes of memory in use.
             pub fn bytes(&self) -> usize {
                 0 $(+ self.$field.bytes())*
+            }
+
+            /// Asks for the memory of the run's first shape.
+            #[inline(always)]
+            pub fn prefetch<L: Lanes>(&self, lanes: L, run: Run) {
+                match run.kind {
+                    $($index => self.$field.prefetch(lanes, run.first),)*
+                    _ => (),
+                }
             }
 
             /// Shows the shapes of the run to the query, until it has seen enough.

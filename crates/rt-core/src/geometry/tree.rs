@@ -31,9 +31,9 @@ impl Child {
     /// A run of a kind that does not exist.
     pub const NOTHING: Child = Child(u32::MAX);
 
-    /// The node with this index, which must be less than 2^31.
+    /// The node with this index, which must be less than 2^28.
     pub fn node(index: usize) -> Child {
-        debug_assert!(index < 1 << 31);
+        debug_assert!(index < 1 << 28);
         Child(index as u32)
     }
 
@@ -42,6 +42,18 @@ impl Child {
         debug_assert!(run.first < Self::CAPACITY && (1..=Self::MOST_SHAPES).contains(&run.count));
         let count = (run.count - 1) as u32;
         Child(Self::LEAF | run.kind << 27 | count << Self::FIRST_BITS | run.first as u32)
+    }
+
+    /// Not a child, but the place of one that is a leaf: told from a node, as a leaf is.
+    #[inline(always)]
+    pub fn place(node: usize, lane: usize) -> Child {
+        Child(Self::LEAF | (node as u32) << 3 | lane as u32 & 7)
+    }
+
+    /// Node and lane of a [`place`](Child::place).
+    #[inline(always)]
+    pub fn as_place(self) -> (usize, usize) {
+        ((self.0 & !Self::LEAF) as usize >> 3, self.0 as usize & 7)
     }
 
     /// The index of the node, if it is one.
@@ -65,6 +77,8 @@ impl Child {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
+    /// The mean edge of the shapes' boxes, in kernel coordinates.
+    pub box_size: f64,
 }
 
 impl Tree {

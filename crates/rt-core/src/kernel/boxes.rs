@@ -50,6 +50,14 @@ impl Boxes {
         }
     }
 
+    /// The corners of the box in this lane, taken modulo 8.
+    #[inline(always)]
+    pub fn corners(&self, lane: usize) -> ([f32; 3], [f32; 3]) {
+        let lane = lane & 7;
+        let [a, b, c, d, e, f] = &self.rows;
+        ([a[lane], b[lane], c[lane]], [d[lane], e[lane], f[lane]])
+    }
+
     /// One of the six rows.
     #[inline(always)]
     pub fn row(&self, row: Row) -> &[f32; 8] {

@@ -16,6 +16,8 @@ pub trait Lanes: Copy {
     fn load(self, from: &[f32; 8]) -> Self::F;
     /// The lanes as an array.
     fn store(self, x: Self::F) -> [f32; 8];
+    /// `a + b`.
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a - b`.
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a * b`.
@@ -66,6 +68,10 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn store(self, x: [f32; 8]) -> [f32; 8] {
         x
+    }
+    #[inline(always)]
+    fn add(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(a, b, |a, b| a + b)
     }
     #[inline(always)]
     fn sub(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {

@@ -9,6 +9,7 @@ mod boxes;
 mod lanes;
 mod level;
 mod memory;
+mod packet;
 mod stack;
 mod task;
 
@@ -16,6 +17,7 @@ pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::vec_on_large_pages;
+pub use packet::{Beam, BeamShape, EightRays};
 pub use stack::Stack;
 pub use task::{Dekker, Fused, Product, Task, run, run_portable};
 

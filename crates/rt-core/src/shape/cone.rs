@@ -27,8 +27,8 @@ impl Cone {
     /// The closed frustum from `base` with `base_radius` to `top` with `top_radius`, in world units.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::Negative`] or [`Error::OutOfRange`] (beyond 1e150, below 1e-150 but not 0) for
-    /// a point, a radius or the height; [`Error::NotPositive`] when both radii are zero; [`Error::Coincident`] when
+    /// [`Error::NotFinite`], [`Error::Negative`] or [`Error::OutOfRange`] (beyond 1e150; the larger radius or the height
+    /// below 1e-150) for a point, a radius or the height; [`Error::NotPositive`] when both radii are zero; [`Error::Coincident`] when
     /// base and top are the same.
     pub fn new(
         base: impl Into<DVec3>,

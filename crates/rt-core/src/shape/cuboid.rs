@@ -470,9 +470,9 @@ trait WithAxis {
 }
 
 impl WithAxis for DVec3 {
-    fn with_axis(mut self, k: usize, value: f64) -> Self {
-        self[k] = value;
-        self
+    fn with_axis(self, k: usize, value: f64) -> Self {
+        let keep = self.to_array();
+        DVec3::from_array([0, 1, 2].map(|i| if i == k { value } else { keep[i] }))
     }
 }
 

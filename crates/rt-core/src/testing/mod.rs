@@ -39,6 +39,7 @@
 
 mod contract;
 mod hard_rays;
+pub mod oracle;
 mod random;
 
 pub use contract::{Effort, Failure, check_primitive};

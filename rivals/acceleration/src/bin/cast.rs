@@ -17,12 +17,27 @@ fn main() {
         start.elapsed().as_secs_f64() * 1e3,
         geometry.memory() as f64 / n as f64
     );
+    let only = arguments.next().unwrap_or_default();
     for (name, rays) in [("primary", primary(1024)), ("random", random(1 << 20))] {
+        if !name.starts_with(&only) {
+            continue;
+        }
         measure(&format!("{name} nearest"), passes, &rays, || {
             rays.iter().fold((0, 0.0), |(hits, sum), ray| match geometry.nearest(ray, Interval::FORWARD) {
                 Some(found) => (hits + 1, sum + found.hit.t()),
                 None => (hits, sum),
             })
+        });
+        let within = vec![Interval::FORWARD; rays.len()];
+        let mut found = vec![None; rays.len()];
+        measure(&format!("{name} nearest_many"), passes, &rays, || {
+            geometry.nearest_many(&rays, &within, &mut found);
+            found.iter().flatten().fold((0, 0.0), |(hits, sum), found| (hits + 1, sum + found.hit.t()))
+        });
+        let mut occluded = vec![false; rays.len()];
+        measure(&format!("{name} occluded_many"), passes, &rays, || {
+            geometry.occluded_many(&rays, &within, &mut occluded);
+            (occluded.iter().filter(|&&yes| yes).count(), 0.0)
         });
         measure(&format!("{name} occluded"), passes, &rays, || {
             (rays.iter().filter(|ray| geometry.occluded(ray, Interval::FORWARD)).count(), 0.0)

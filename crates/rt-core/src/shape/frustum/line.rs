@@ -77,12 +77,15 @@ impl Task for FindLine<'_> {
         let depth = b.square::<P>() - a.mul::<P>(c);
         let root = depth.sqrt::<P>();
         // The larger root in size has no cancellation; the product of both is c / a.
-        let side = if b.high > 0.0 {
+        let side = if depth.high <= 0.0 {
+            // A double root, or none: then the closest approach, for hits that are known to exist.
+            [quotient::<P>(-b, a); 2]
+        } else if b.high > 0.0 {
             let q = -b - root;
             [quotient::<P>(q, a), c.div::<P>(q)]
         } else {
             let q = root - b;
-            if q.high == 0.0 { [Double::ZERO; 2] } else { [c.div::<P>(q), quotient::<P>(q, a)] }
+            [c.div::<P>(q), quotient::<P>(q, a)]
         };
         Line { shift, start, z, z_growth, height: f.height, e1, a, c, depth, side }
     }

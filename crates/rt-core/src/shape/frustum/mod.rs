@@ -78,7 +78,12 @@ impl Task for Measure {
         let own = exponent(largest(along.high()));
         let along = along.scale_exact(exp2i(-own));
         let length = along.length_squared::<P>().sqrt::<P>();
-        let axis = along.mul::<P>(Double::ONE.div::<P>(length));
+        // Quotients, not products with a reciprocal: an axis along a coordinate axis stays exact.
+        let axis = DoubleVector {
+            x: along.x.div::<P>(length),
+            y: along.y.div::<P>(length),
+            z: along.z.div::<P>(length),
+        };
         let growth = Double::difference(self.radii[1], self.radii[0]).scale_exact(exp2i(-own));
         let slope = growth.div::<P>(length);
         // The slope may be huge or tiny: divide by the larger of the two.
@@ -97,7 +102,7 @@ impl Task for Measure {
 impl Frustum {
     /// Checks and measures.
     ///
-    /// `names`: of the radii, for the error; a radius may be zero where the caller checked that not both are.
+    /// `names`: of the radii, for the error; the smaller radius, known to be zero or more, may be as small as it likes.
     pub fn new(
         base: DVec3,
         radii: [f64; 2],
@@ -107,11 +112,8 @@ impl Frustum {
     ) -> Result<Self, Error> {
         let base = checked_point("base", base)?;
         let top = checked_point("top", top)?;
-        for (name, radius) in names.into_iter().zip(radii) {
-            if radius != 0.0 {
-                checked_length(name, radius)?;
-            }
-        }
+        let larger = if radii[0] >= radii[1] { 0 } else { 1 };
+        checked_length(names[larger], radii[larger])?;
         if base == top {
             return Err(Error::Coincident { what: "base and top", value: base });
         }

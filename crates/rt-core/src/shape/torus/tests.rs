@@ -263,6 +263,16 @@ proptest! {
     #[test]
     fn rays_go_on_from_each_crossing((torus, ray) in aimed()) {
         let hits = all(&torus, &ray);
+        // The start is rounded to a unit of the size in the world: what passes another place by less may hit it.
+        let far = torus.center.abs().max_element() + torus.major + torus.minor;
+        let steady = |by: f64| {
+            let other = Torus { minor: torus.minor + by * 16.0 * f64::EPSILON * far, ..torus };
+            Torus::new(other.center, other.axis, other.major, other.minor)
+                .is_ok_and(|other| all(&other, &ray).len() == hits.len())
+        };
+        if !(steady(1.0) && steady(-1.0)) {
+            return Ok(());
+        }
         for index in 0..hits.len() {
             let clear = |h: Hit| {
                 let s = torus.surface(&ray, h);
