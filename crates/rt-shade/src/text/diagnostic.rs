@@ -207,6 +207,8 @@ pub(crate) fn in_words(error: &dyn fmt::Display) -> String {
     let mut rest = text.as_str();
     while let Some(start) = rest.find(of_number) {
         let length = rest[start..].find(|c| !of_number(c)).unwrap_or(rest.len() - start);
+        // A full stop after the number, or one without a number, is none of its digits.
+        let length = rest[start..start + length].trim_end_matches('.').len().max(1);
         let (before, number) = (&rest[..start], &rest[start..start + length]);
         words.push_str(before);
         match number.parse::<f64>() {
@@ -261,10 +263,10 @@ mod tests {
     #[test]
     fn huge_and_tiny_numbers_stay_readable() {
         let of = |value: f64| in_words(&format!("radius must be less than 1.5, got {value}."));
-        assert_eq!(of(-1e308), "radius must be less than 1.5, got -1e308.".replace("308.", "308") + ".");
+        assert_eq!(of(-1e308), "radius must be less than 1.5, got -1e308.");
         assert_eq!(of(2.5e-310), "radius must be less than 1.5, got 2.5e-310.");
         assert_eq!(of(0.1 + 0.2), "radius must be less than 1.5, got 0.30000000000000004.");
-        assert_eq!(in_words(&"no number"), "no number");
+        assert_eq!(in_words(&"no number... 7..8"), "no number... 7..8");
     }
 
     #[test]

@@ -20,6 +20,7 @@
 //! weighted by `Ks` and `T` alone, without Fresnel. Equal fills are one material, and so one medium: a solid made of
 //! loose polygons is told from its surroundings by their orientation.
 
+mod fill;
 mod polygon;
 mod reader;
 mod token;

@@ -3,25 +3,22 @@
 use super::super::diagnostic::{Report, in_words};
 use super::super::suggest;
 use super::super::{Diagnostics, Loaded};
+use super::fill;
 use super::polygon::{MOST_VERTICES, triangulate};
 use super::token::{Token, Tokens};
 use crate::light::check_color;
-use crate::{
-    Attenuation, Camera, Color, Light, Material, Object, Optics, Paint, Scene, SceneBuilder, Settings,
-};
+use crate::{Attenuation, Camera, Color, Light, Object, Scene, SceneBuilder, Settings};
 use rt_core::Shape;
 use rt_core::glam::DVec3;
 use rt_core::shape::{Cone, Cylinder, Sphere, Triangle};
 use std::collections::HashMap;
+use std::fmt::Display;
 use std::ops::Range;
 
 /// The depth of rays that the format's ray counts are made with.
 const DEPTH: u32 = 5;
 
 const ENTITIES: [&str; 8] = ["v", "b", "l", "f", "s", "c", "p", "pp"];
-
-/// The numbers of a fill, in the order of the file.
-const FILL: [&str; 8] = ["red", "green", "blue", "Kd", "Ks", "Shine", "T", "ior"];
 
 /// Reads a scene in the Neutral File Format; `name` is what messages call the file.
 ///
@@ -105,7 +102,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A finite number; `what` says in messages which.
-    fn number(&mut self, what: &str) -> Result<f64, Reported> {
+    fn number(&mut self, what: &dyn Display) -> Result<f64, Reported> {
         let Some(token) = self.tokens.peek() else {
             let place = self.tokens.place();
             self.report.error(place, format!("the file ends where {what} should stand"));
@@ -126,7 +123,7 @@ impl<'a> Reader<'a> {
         Err(Reported)
     }
 
-    fn vector(&mut self, what: &str) -> Result<DVec3, Reported> {
+    fn vector(&mut self, what: &dyn Display) -> Result<DVec3, Reported> {
         Ok(DVec3::new(self.number(what)?, self.number(what)?, self.number(what)?))
     }
 
@@ -134,7 +131,7 @@ impl<'a> Reader<'a> {
         let mut channels = [0.0; 3];
         for channel in &mut channels {
             let place = self.tokens.place();
-            *channel = self.number(what)?;
+            *channel = self.number(&what)?;
             if check_color(what, Color::gray(*channel)).is_err() {
                 let message = format!("{what} must have channels from 0 to 1e30, got {}", in_words(channel));
                 self.report.error(place, message);
@@ -145,7 +142,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A whole number within the range.
-    fn whole(&mut self, what: &str, least: u32, most: u32) -> Result<u32, Reported> {
+    fn whole(&mut self, what: &dyn Display, least: u32, most: u32) -> Result<u32, Reported> {
         let place = self.tokens.place();
         let text = self.tokens.peek().map_or("", |token| token.text);
         match text.parse::<u32>() {
@@ -167,11 +164,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The value, or the error at this place.
-    fn checked<T, E: std::fmt::Display>(
-        &mut self,
-        result: Result<T, E>,
-        place: Range<usize>,
-    ) -> Result<T, Reported> {
+    fn checked<T, E: Display>(&mut self, result: Result<T, E>, place: Range<usize>) -> Result<T, Reported> {
         result.map_err(|error| {
             self.report.error(place, in_words(&error));
             Reported
@@ -193,17 +186,17 @@ impl<'a> Reader<'a> {
             }
             self.tokens.next();
             match word.text {
-                "from" => from = Some(self.vector("`from`")?),
-                "at" => at = Some((self.vector("`at`")?, place)),
-                "up" => up = Some((self.vector("`up`")?, place)),
-                "angle" => angle = Some((self.number("`angle`")?, place)),
+                "from" => from = Some(self.vector(&"`from`")?),
+                "at" => at = Some((self.vector(&"`at`")?, place)),
+                "up" => up = Some((self.vector(&"`up`")?, place)),
+                "angle" => angle = Some((self.number(&"`angle`")?, place)),
                 "hither" => {
-                    self.number("`hither`")?;
+                    self.number(&"`hither`")?;
                 }
                 _ => {
                     let most = Settings::MOST_SIZE;
-                    let width = self.whole("the width of the resolution", 1, most)?;
-                    size = Some((width, self.whole("the height of the resolution", 1, most)?));
+                    let width = self.whole(&"the width of the resolution", 1, most)?;
+                    size = Some((width, self.whole(&"the height of the resolution", 1, most)?));
                 }
             }
         }
@@ -241,7 +234,7 @@ impl<'a> Reader<'a> {
     }
 
     fn light(&mut self, token: Token) -> Result<(), Reported> {
-        let position = self.vector("the position of a light")?;
+        let position = self.vector(&"the position of a light")?;
         let mut color = Color::WHITE;
         if self.tokens.peek().is_some_and(|next| next.is_numeric()) {
             color = self.color("light color")?;
@@ -256,29 +249,18 @@ impl<'a> Reader<'a> {
         let mut numbers = [0.0; 8];
         let mut bits = [0; 8];
         let mut places: [Range<usize>; 8] = Default::default();
-        for (index, what) in FILL.into_iter().enumerate() {
+        for (index, what) in fill::NUMBERS.into_iter().enumerate() {
             places[index] = self.tokens.place();
-            numbers[index] = self.number(what)?;
+            numbers[index] = self.number(&what)?;
             bits[index] = numbers[index].to_bits();
         }
         if let Some(known) = self.fills.get(&bits) {
             self.fill = Some(*known);
             return Ok(());
         }
-        let [red, green, blue, diffuse, specular, shininess, transmit, ior] = numbers;
-        let material = Material {
-            paint: Paint::Color(Color::new(red, green, blue)),
-            diffuse,
-            specular,
-            shininess,
-            reflect: specular,
-            transmit: Color::gray(transmit),
-            // The index of what lets no light through means nothing; it is 0 in most files.
-            ior: (transmit > 0.0 && ior != 0.0).then_some(ior),
-            optics: Optics::Plain,
-        };
+        let material = fill::material(numbers);
         let checked = material.check();
-        let place = checked.as_ref().err().map_or(0, |error| wrong_number(error, numbers));
+        let place = checked.as_ref().err().map_or(0, |error| fill::wrong_number(error, numbers));
         self.checked(checked, places[place].clone())?;
         let index = self.scene.add_material(material);
         self.fills.insert(bits, index);
@@ -300,16 +282,16 @@ impl<'a> Reader<'a> {
     }
 
     fn sphere(&mut self, token: Token) -> Result<(), Reported> {
-        let center = self.vector("the center of a sphere")?;
-        let radius = self.number("the radius of a sphere")?.abs();
+        let center = self.vector(&"the center of a sphere")?;
+        let radius = self.number(&"the radius of a sphere")?.abs();
         self.add(token, Sphere::new(center, radius).map(Shape::from))
     }
 
     fn cone(&mut self, token: Token) -> Result<(), Reported> {
-        let base = self.vector("the base of a cone")?;
-        let base_radius = self.number("the base radius of a cone")?;
-        let apex = self.vector("the apex of a cone")?;
-        let apex_radius = self.number("the apex radius of a cone")?;
+        let base = self.vector(&"the base of a cone")?;
+        let base_radius = self.number(&"the base radius of a cone")?;
+        let apex = self.vector(&"the apex of a cone")?;
+        let apex_radius = self.number(&"the apex radius of a cone")?;
         if base_radius * apex_radius < 0.0 {
             let message =
                 format!("the radii {base_radius} and {apex_radius} of a cone must have the same sign");
@@ -326,14 +308,14 @@ impl<'a> Reader<'a> {
     }
 
     fn polygon(&mut self, token: Token, smooth: bool) -> Result<(), Reported> {
-        let count = self.whole("the number of vertices", 3, MOST_VERTICES as u32)? as usize;
+        let count = self.whole(&"the number of vertices", 3, MOST_VERTICES as u32)? as usize;
         let mut vertices = Vec::with_capacity(count);
         let mut normals = Vec::with_capacity(if smooth { count } else { 0 });
         for index in 0..count {
-            let what = format!("vertex {} of {count}", index + 1);
-            vertices.push(self.vector(&what)?);
+            let number = index + 1;
+            vertices.push(self.vector(&format_args!("vertex {number} of {count}"))?);
             if smooth {
-                normals.push(self.vector(&format!("the normal of {what}"))?);
+                normals.push(self.vector(&format_args!("the normal of vertex {number} of {count}"))?);
             }
         }
         if vertices.iter().any(|v| v.abs().max_element() > f64::MAX / 4.0) {
@@ -392,21 +374,6 @@ impl<'a> Reader<'a> {
                 self.report.finish_failed()
             }
         }
-    }
-}
-
-/// Which of a fill's numbers the error is about.
-fn wrong_number(error: &crate::Error, numbers: [f64; 8]) -> usize {
-    match error {
-        crate::Error::Color { what: "transmit", .. } | crate::Error::Number { what: "transmit", .. } => 6,
-        crate::Error::Color { .. } => {
-            numbers[..3].iter().position(|c| check_color("color", Color::gray(*c)).is_err()).unwrap_or(0)
-        }
-        crate::Error::Number { what: "diffuse", .. } => 3,
-        crate::Error::Number { what: "shininess", .. } => 5,
-        crate::Error::Number { what: "ior", .. } => 7,
-        // What is left is both highlight and mirror.
-        _ => 4,
     }
 }
 

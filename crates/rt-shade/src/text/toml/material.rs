@@ -101,8 +101,10 @@ pub(super) fn materials<'t>(
     names
 }
 
+type Setter = fn(&mut Material, f64);
+
 /// The numbers of a material.
-const NUMBERS: [(&str, fn(&mut Material, f64)); 5] = [
+const NUMBERS: [(&str, Setter); 5] = [
     ("diffuse", |m, x| m.diffuse = x),
     ("specular", |m, x| m.specular = x),
     ("shininess", |m, x| m.shininess = x),

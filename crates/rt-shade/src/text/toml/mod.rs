@@ -214,6 +214,12 @@ fn plain_words(message: &str) -> String {
         "unexpected leading zero, expected nothing" => {
             "a number does not start with a superfluous 0: leave it out"
         }
+        "missing comma between array elements, expected `,`" => {
+            "a comma is missing here, or the `]` of the list before"
+        }
+        "missing comma between key-value pairs, expected `,`" => {
+            "a comma is missing here, or the `}` of the table before"
+        }
         "duplicate key" => "this key is given twice: rename or remove one of them",
         "recursion limit" => "tables are nested too deeply: at most 80 levels",
         "key with no value, expected `=`" => "a key needs a value: write KEY = VALUE",

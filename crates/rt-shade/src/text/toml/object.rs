@@ -2,7 +2,8 @@
 
 use super::super::diagnostic::{Report, in_words};
 use super::super::reader::{Node, Table};
-use super::super::shape::{Place, Value, check, make};
+use super::super::shape::{self, Place, Value, check, make};
+use super::super::suggest;
 use super::material::{Names, named};
 use crate::{Object, SceneBuilder};
 use rt_core::{Shape, Similarity};
@@ -13,44 +14,47 @@ pub(super) fn object(node: Node, materials: &Names, scene: &mut SceneBuilder, re
     let name = table.get("name").map_or(Some(""), |n| n.text(report));
     let material = table.get("material").and_then(|n| named(n, materials, report));
     let no_shadow = table.get("no_shadow").map_or(Some(false), |n| n.boolean(report));
-    let similarity = similarity(&table, report);
+    let steps = steps(&table, report);
     let shape = table.get("shape").and_then(|n| shape(n, report));
     // All has been read: from here on nothing is left unreported.
     let (Some(name), Some(material), Some(no_shadow)) = (name, material, no_shadow) else { return };
-    let (Some(similarity), Some(shape)) = (similarity, shape) else { return };
-    let shape = match similarity {
-        Some(similarity) => match shape.transformed(&similarity) {
-            Ok(shape) => shape,
-            Err(error) => {
-                let moved = ["scale", "translate", "rotate"].iter().find_map(|key| table.get(key));
-                let place = moved.map_or(table.place, |node| node.place());
-                let error = in_words(&error);
-                report.error(place, format!("scaled, turned and moved the shape is not legal: {error}"));
-                return;
-            }
-        },
-        None => shape,
-    };
-    scene.add_object(Object { name: name.to_string(), material, no_shadow }, shape);
+    let (Some(steps), Some(shape)) = (steps, shape) else { return };
+    let moved = steps.last().map_or(Ok(shape.clone()), |(_, all)| shape.transformed(all));
+    match moved {
+        Ok(shape) => {
+            scene.add_object(Object { name: name.to_string(), material, no_shadow }, shape);
+        }
+        Err(error) => {
+            // The first step that is too much for the shape.
+            let culprit = steps.iter().find(|(_, so_far)| shape.transformed(so_far).is_err());
+            let place = culprit.map_or(table.place, |(node, _)| node.place());
+            let error = in_words(&error);
+            report.error(place, format!("scaled, turned and moved the shape is not legal: {error}"));
+        }
+    }
 }
 
-/// Scale, then rotate, then translate; `Some(None)` when there is none of them.
-fn similarity(table: &Table, report: &mut Report) -> Option<Option<Similarity>> {
-    let mut similarity = Some(Similarity::IDENTITY);
-    let mut any = false;
+/// Scale, rotate and translate as far as they are given, in this order, each with those before it.
+fn steps<'t>(table: &Table<'t>, report: &mut Report) -> Option<Vec<(Node<'t>, Similarity)>> {
+    let mut steps = Vec::new();
+    let mut good = true;
+    let mut so_far = Similarity::IDENTITY;
     for key in ["scale", "rotate", "translate"] {
         let Some(node) = table.get(key) else { continue };
-        any = true;
-        // What went wrong before does not hide what goes wrong here.
-        let before = similarity.unwrap_or(Similarity::IDENTITY);
         let after = match key {
-            "scale" => node.number(report).and_then(|factor| place(node, before.scaled(factor), report)),
-            "rotate" => rotated(node, before, report),
-            _ => node.vector(report).and_then(|by| place(node, before.translated(by), report)),
+            "scale" => node.number(report).and_then(|factor| place(node, so_far.scaled(factor), report)),
+            "rotate" => rotated(node, so_far, report),
+            _ => node.vector(report).and_then(|by| place(node, so_far.translated(by), report)),
         };
-        similarity = similarity.and(after);
+        match after {
+            Some(after) => {
+                so_far = after;
+                steps.push((node, so_far));
+            }
+            None => good = false,
+        }
     }
-    similarity.map(|similarity| any.then_some(similarity))
+    good.then_some(steps)
 }
 
 fn rotated(node: Node, before: Similarity, report: &mut Report) -> Option<Similarity> {
@@ -71,16 +75,25 @@ fn shape(node: Node, report: &mut Report) -> Option<Shape> {
         report.error(node.place(), message);
         return None;
     };
-    let mut kinds = Node::of_table(kinds);
-    let Some(kind) = kinds.next() else {
-        report.error(node.place(), "`shape` is empty: write shape.sphere, shape.torus or another");
-        return None;
-    };
-    if let Some(second) = kinds.next() {
-        let (first, name) = (kind.name(), second.name());
-        let message = format!("this object is already a {first}: write another [[object]] for the {name}");
-        report.error(second.key.span(), message);
+    let mut found: Option<Node> = None;
+    for node in Node::of_table(kinds) {
+        let name = node.name();
+        if !shape::kinds().any(|kind| kind == name) {
+            let advice = suggest::advice(name, shape::kinds(), "");
+            report.error(node.key.span(), format!("unknown shape `{name}`: {advice}"));
+        } else if let Some(first) = found {
+            let first = first.name();
+            let message =
+                format!("this object is already a {first}: write another [[object]] for the {name}");
+            report.error(node.key.span(), message);
+        } else {
+            found = Some(node);
+        }
     }
+    if kinds.is_empty() {
+        report.error(node.place(), "`shape` is empty: write shape.sphere, shape.torus or another");
+    }
+    let kind = found?;
     let Some(fields) = kind.value().as_table() else {
         let message = format!("`{}` must be a table {{ .. }} with the shape's numbers", kind.name());
         report.error(kind.place(), message);
