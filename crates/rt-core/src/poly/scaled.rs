@@ -75,8 +75,6 @@ pub(super) struct Local {
     pub y: Double,
     /// The exponent of `y`.
     pub exponent: i32,
-    /// The common power of two that was taken out.
-    pub power: i32,
     /// Whether a term was too small to keep.
     pub dropped: bool,
 }
@@ -158,18 +156,13 @@ impl Polynomial {
         bound + 1
     }
 
-    /// The exponent at which the constant term and the next one balance: where to look about `x = 0`.
+    /// The exponent below which the constant term is the greatest: where to look about `x = 0`.
     fn balance(&self) -> i32 {
-        let t = &self.terms;
-        if t[0].mantissa.high == 0.0 {
-            return 0;
-        }
-        for k in 1..=self.degree {
-            if t[k].mantissa.high != 0.0 {
-                return (t[0].exponent - t[k].exponent).div_euclid(k as i32);
-            }
-        }
-        0
+        let constant = self.terms[0].exponent;
+        let of = |(k, t): (usize, &Term)| {
+            if t.mantissa.high == 0.0 { None } else { Some((constant - t.exponent).div_euclid(k as i32)) }
+        };
+        if self.vanishes_at_zero() { 0 } else { self.terms.iter().enumerate().skip(1).filter_map(of).min().unwrap_or(0) }
     }
 
     /// The terms as seen at `x`.
@@ -199,7 +192,7 @@ impl Polynomial {
                 }
             }
         }
-        Local { c, y, exponent: e, power, dropped }
+        Local { c, y, exponent: e, dropped }
     }
 
     /// Value, slope and curvature at `x`.
