@@ -64,15 +64,18 @@ fn geometry(criterion: &mut Criterion) {
             group.throughput(Throughput::Elements(rays.len() as u64));
             group.bench_function("nearest", |bencher| {
                 bencher.iter(|| {
-                    rays.iter().filter(|ray| fast.nearest(black_box(ray), Interval::FORWARD).is_some()).count()
+                    rays.iter()
+                        .filter(|ray| fast.nearest(black_box(ray), Interval::FORWARD).is_some())
+                        .count()
                 })
             });
             group.bench_function("nearest_many", |bencher| {
                 bencher.iter(|| fast.nearest_many(black_box(&rays), &within, &mut found))
             });
             group.bench_function("occluded", |bencher| {
-                bencher
-                    .iter(|| rays.iter().filter(|ray| fast.occluded(black_box(ray), Interval::FORWARD)).count())
+                bencher.iter(|| {
+                    rays.iter().filter(|ray| fast.occluded(black_box(ray), Interval::FORWARD)).count()
+                })
             });
             group.finish();
         }
