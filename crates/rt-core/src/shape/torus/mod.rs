@@ -209,7 +209,7 @@ impl Torus {
     ///
     /// `solver` gets the coefficients in ascending powers of `x^4 + 2 P x^2 + 4 Q x + c`, `x` being the distance from
     /// the ray's closest approach to the centre in units of a power of two near the torus' size, and the interval
-    /// in which to look; every function of [`poly::quartic`](crate::poly::quartic) fits. The coefficients are
+    /// in which to look; every function of [`poly::quartic`](mod@crate::poly::quartic) fits. The coefficients are
     /// rounded and what is returned is what the solver finds: nothing is certified.
     ///
     /// ```
