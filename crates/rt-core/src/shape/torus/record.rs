@@ -7,7 +7,7 @@ use crate::double::Double;
 use crate::frame::turns;
 use crate::kernel::{Product, Task};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{ScaledRay, times_power};
+use crate::scaled::{ScaledRay, largest, times_power};
 use crate::{Hit, Surface};
 use glam::{DVec2, DVec3};
 
@@ -85,27 +85,37 @@ impl Task for Thorough<'_> {
         let line = Line::of::<P>(torus, ray);
         let crossings = exact::crossings::<P>(torus, &line);
         let t = Double::from(times_power(hit.t(), -ray.power));
-        let x = match chosen::<P>(&crossings, &line, t.high, hit.root()) {
-            Some(x) => x,
-            // A ray that left this torus along a tangent may pass it by less than the radius by which its origin
-            // was moved: the point at the parameter is the best there is.
-            None => line.distance::<P>(t),
-        };
-        torus.record::<P>(ray, &line, x)
+        let x = line.distance::<P>(t);
+        // A ray that left this torus was followed from its exact start; its origin differs from that by a few units
+        // in the last place of the world's coordinates. That changes f by at most its gradient, less than
+        // 32 (R + r)^3, times as much, and a value of so little has a zero of f, which is monic and of degree four,
+        // within the fourth root.
+        let moved = largest(torus.center) * exp2i(-torus.scale) + largest(ray.relative.high()) + torus.reach;
+        let change = 32.0 * torus.reach * torus.reach * torus.reach * moved * exp2i(-50);
+        match chosen(&crossings, x.high, sqrt(sqrt(change)), hit.root()) {
+            Some(x) => torus.record::<P>(ray, &line, x),
+            // That zero is not real: the moved ray passes a place that the exact one grazes.
+            None => {
+                let mut surface = torus.record::<P>(ray, &line, x);
+                surface.normal = surface.normal.normalize();
+                surface.shading_normal = surface.normal;
+                surface
+            }
+        }
     }
 }
 
-/// The crossing that the hit names: the one of that index, unless another in the same sense (both inward or both
-/// outward) is nearer to the hit's parameter. Only rays that leave this torus make a difference: they were counted
-/// along the line from the departure's point, not along the line of the moved ray.
+/// The crossing that the hit names: of those in the same sense (both inward or both outward) the one nearest to its
+/// place, unless that is too far, and of equally near ones that of its index. Only rays that leave this torus make a
+/// difference: they were counted along the line from the departure's point, not along the line of the moved ray.
 #[inline(always)]
-fn chosen<P: Product>(crossings: &Crossings, line: &Line, t: f64, root: u32) -> Option<Double> {
+fn chosen(crossings: &Crossings, place: f64, too_far: f64, root: u32) -> Option<Double> {
     let mut best: Option<(f64, Double)> = None;
     for (index, x) in crossings.as_slice().iter().enumerate() {
-        if index as u32 % 2 != root % 2 {
+        let miss = (x.high - place).abs();
+        if index as u32 % 2 != root % 2 || miss > too_far {
             continue;
         }
-        let miss = (line.parameter_at::<P>(*x).high - t).abs();
         if best.is_none_or(|(least, _)| miss < least || (miss == least && index as u32 == root)) {
             best = Some((miss, *x));
         }
@@ -164,7 +174,7 @@ impl Torus {
     #[inline(always)]
     fn error_radius(&self, point: DVec3, uncertainty: f64, slope: f64) -> f64 {
         // sqrt(3) < 1.75, and a few units of slack.
-        let rounding = crate::scaled::largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
+        let rounding = largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
         let along = uncertainty / (4.0 * slope.abs());
         let most = sqrt(uncertainty);
         rounding + exp2i(self.scale) * if along < most { along } else { most }
