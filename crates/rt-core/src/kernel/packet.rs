@@ -1,7 +1,6 @@
 //! Several rays against one box, and a beam that holds them against eight.
 
 use super::{Boxes, Lanes, Row};
-use glam::DVec3;
 
 /// Eight rays side by side against one box.
 ///
