@@ -100,7 +100,10 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
     build_node(items, 0, whole, &mut nodes);
     number_by_kind(items, &mut nodes);
-    nodes.shrink_to_fit();
+    // Shrinking in place would copy them to pages of common size.
+    let mut exact = vec_on_large_pages(nodes.len());
+    exact.append(&mut nodes);
+    let nodes = exact;
     let size = |item: &Item| (0..3).map(|k| f64::from(item.max[k] - item.min[k])).sum::<f64>() / 3.0;
     let box_size = items.iter().map(size).sum::<f64>() / items.len() as f64;
     Tree { nodes, box_size }

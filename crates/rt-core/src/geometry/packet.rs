@@ -18,7 +18,7 @@ pub(super) const PACKET: usize = 16;
 const FEWEST: u32 = 4;
 
 /// A beam visits as many boxes as cross it. Up to this many times those that cross a ray, it still costs less than its
-/// sixteen rays one by one (measured: from 10^2 to 10^6 spheres; ../rivals/acceleration).
+/// sixteen rays one by one: it decides time only.
 const MOST_SPREAD: f64 = 64.0;
 
 /// The rays of a packet in kernel coordinates, by axis. Places without a ray repeat another.

@@ -50,7 +50,7 @@ fn measure(name: &str, passes: usize, rays: &[Ray], mut work: impl FnMut() -> (u
     for _ in 0..passes {
         let start = cpu_seconds();
         answer = work();
-        best = best.min((cpu_seconds() - start));
+        best = best.min(cpu_seconds() - start);
     }
     println!(
         "  {name:24} {:7.2} Mrays/s  hits={} sum={:.6}",
