@@ -22,16 +22,25 @@ pub type Renderer = dyn Fn(&Scene, &Settings) -> Picture;
 /// A shape of size 1 about the origin, and what is known of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// A sphere.
     Sphere,
+    /// A cube.
     Cuboid,
+    /// A closed cylinder.
     Cylinder,
+    /// A closed cone.
     Cone,
+    /// A ring.
     Torus,
+    /// A plane.
     Plane,
+    /// A disk.
     Disk,
+    /// A triangle.
     Triangle,
 }
 
+/// Every shape.
 pub const KINDS: [Kind; 8] = [
     Kind::Sphere,
     Kind::Cuboid,
@@ -42,7 +51,9 @@ pub const KINDS: [Kind; 8] = [
     Kind::Disk,
     Kind::Triangle,
 ];
+/// What all lengths are multiplied by.
 pub const SCALES: [f64; 7] = [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6];
+/// How many sizes of the shape everything is moved by.
 pub const OFFSETS: [f64; 4] = [0.0, 1e2, 1e4, 1e6];
 
 impl Kind {

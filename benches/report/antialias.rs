@@ -57,7 +57,7 @@ pub fn run(effort: Effort, output: &mut Output) {
             }
         };
         let draw = |antialias| {
-            let mut settings = settings.clone();
+            let mut settings = settings;
             (settings.width, settings.height, settings.antialias) = (size, size, antialias);
             let start = Instant::now();
             let rendering = rt_shade::render(&scene, &settings, &());

@@ -43,7 +43,7 @@ pub fn lines(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[S
 fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series], joined: bool) -> Drawn {
     let clamp = |y: f64| match y {
         y if !y.is_finite() => GREATEST,
-        y if y == 0.0 => LEAST,
+        0.0 => LEAST,
         y => y.min(GREATEST),
     };
     let all = || series.iter().flat_map(|s| &s.points);

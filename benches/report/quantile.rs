@@ -35,7 +35,7 @@ impl Errors {
 /// A number at three significant digits, plain between 0.01 and 10 000.
 pub fn brief(x: f64) -> String {
     match x {
-        x if x == 0.0 => "0".into(),
+        0.0 => "0".into(),
         x if x.is_infinite() => "inf".into(),
         x if (1e-2..1e4).contains(&x.abs()) => {
             let digits = (2 - x.abs().log10().floor() as i32).max(0) as usize;

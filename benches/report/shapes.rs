@@ -126,9 +126,17 @@ fn judge(case: &RayCase, answer: Option<f64>) -> Option<Option<f64>> {
     }
 }
 
+/// What the answers to one family are worth.
+#[derive(Default)]
+struct Group {
+    errors: Vec<f64>,
+    wrong: usize,
+    rays: usize,
+}
+
 /// Accuracy of every way on the truth rows, by kind and by family.
 fn accuracy(cases: &[RayCase]) -> Vec<Row> {
-    let mut groups: BTreeMap<(String, String, Way), (Vec<f64>, usize, usize)> = BTreeMap::new();
+    let mut groups: BTreeMap<(String, String, Way), Group> = BTreeMap::new();
     for case in cases {
         let Some(prepared) = Prepared::new(&case.kind, &case.numbers) else { continue };
         let cast = Cast::new(case.ray, case.within);
@@ -136,11 +144,11 @@ fn accuracy(cases: &[RayCase]) -> Vec<Row> {
             let verdict = judge(case, prepared.first(way, &cast));
             for set in ["all hard cases", &case.family] {
                 let group = groups.entry((case.kind.clone(), set.into(), way)).or_default();
-                group.2 += 1;
+                group.rays += 1;
                 match verdict {
                     // A count is judged where the truth is robust to 64 units, an error to 4.
-                    None if case.margin > 64.0 * UNIT => group.1 += 1,
-                    Some(Some(error)) if case.margin > 4.0 * UNIT => group.0.push(error),
+                    None if case.margin > 64.0 * UNIT => group.wrong += 1,
+                    Some(Some(error)) if case.margin > 4.0 * UNIT => group.errors.push(error),
                     _ => {}
                 }
             }
@@ -148,7 +156,7 @@ fn accuracy(cases: &[RayCase]) -> Vec<Row> {
     }
     groups
         .into_iter()
-        .map(|((kind, set, way), (errors, wrong, rays))| Row {
+        .map(|((kind, set, way), Group { errors, wrong, rays })| Row {
             kind,
             set,
             way,

@@ -86,6 +86,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let loaded = scene_file::load(&options.scene)?;
     let (settings, part) = settings(options, &loaded)?;
 
+    let extent = settings.extent();
+    picture_file::check_memory(extent.width, extent.height)?;
+
     let listener = Listener::new(options.progress, options.quiet);
     interrupt::rendering();
     let start = Instant::now();

@@ -33,6 +33,7 @@ pub fn run(parts: &[PathBuf], output: &Path) -> Result<(), Failure> {
     let Some(&(Place { width, height, .. }, _)) = found.first() else {
         return Err(Failure::Usage("no parts given".into()));
     };
+    picture_file::check_memory(width, height)?;
     let mut whole = Picture::new(width, height);
     let columns = width as usize;
     for (place, path) in &found {

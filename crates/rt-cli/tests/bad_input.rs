@@ -433,6 +433,17 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
+fn a_picture_too_large_for_the_memory() {
+    let workshop = Workshop::new();
+    let outcome = render(&workshop, "scene.toml", &["--width", "65536", "--height", "65536"]);
+    assert_eq!(outcome.code(), 1);
+    assert!(outcome.stderr.starts_with("error: 65536 x 65536 pixels take 96.0 GiB"), "{outcome:?}");
+    let outcome =
+        render(&workshop, "scene.toml", &["--width", "65536", "--height", "65536", "--region", "9,9,2,2"]);
+    assert_eq!(outcome.code(), 0);
+}
+
+#[test]
 fn all_errors_come_in_one_run() {
     let workshop = Workshop::new();
     let text = EVERYTHING.replace("radius = 1 }", "radius = -1 }").replace("fov = 40", "fov = 0");

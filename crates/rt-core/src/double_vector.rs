@@ -56,12 +56,6 @@ impl DoubleVector {
         DoubleVector { x: self.x.mul::<P>(s), y: self.y.mul::<P>(s), z: self.z.mul::<P>(s) }
     }
 
-    /// The product with a `f64`.
-    #[inline(always)]
-    pub fn scale<P: Product>(self, s: f64) -> Self {
-        DoubleVector { x: self.x.scale::<P>(s), y: self.y.scale::<P>(s), z: self.z.scale::<P>(s) }
-    }
-
     /// The scalar product.
     #[inline(always)]
     pub fn dot<P: Product>(self, b: DoubleVector) -> Double {
@@ -78,16 +72,6 @@ impl DoubleVector {
     #[inline(always)]
     pub fn length_squared<P: Product>(self) -> Double {
         self.x.square::<P>() + self.y.square::<P>() + self.z.square::<P>()
-    }
-
-    /// The vector product with a vector of `f64`.
-    #[inline(always)]
-    pub fn cross_f64<P: Product>(self, b: DVec3) -> Self {
-        DoubleVector {
-            x: self.y.scale::<P>(b.z) - self.z.scale::<P>(b.y),
-            y: self.z.scale::<P>(b.x) - self.x.scale::<P>(b.z),
-            z: self.x.scale::<P>(b.y) - self.y.scale::<P>(b.x),
-        }
     }
 
     /// The leading parts: the nearest `f64` of each coordinate.

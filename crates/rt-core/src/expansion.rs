@@ -99,7 +99,7 @@ impl Expansion {
 
     /// The sum of two `f64` that is nearest, within 2^-104 of the exact value, relatively (the two leading components
     /// of Shewchuk's compress).
-    pub(crate) fn to_double(&self) -> Double {
+    pub(crate) fn rounded(&self) -> Double {
         let mut parts = self.parts[..self.len].iter().rev();
         let mut sum = parts.next().copied().unwrap_or(0.0);
         let mut high = None;
@@ -127,4 +127,35 @@ pub(crate) fn product<P: Product>(a: f64, b: f64) -> Double {
     const LEAST: f64 = crate::math::exp2i(-968);
     let p = Double::product::<P>(a, b);
     if p.high.abs() < LEAST { Double::from(p.high) } else { p }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Dekker;
+
+    #[test]
+    fn sums_that_cancel_are_exact() {
+        let mut sum = Expansion::ZERO;
+        for x in [1e300, 1.0, -1e300, 1e-300, -1.0] {
+            sum.add(x);
+        }
+        assert_eq!((sum.sign(), sum.rounded()), (1, Double::from(1e-300)));
+        sum.add(-1e-300);
+        assert_eq!((sum.sign(), sum.rounded()), (0, Double::ZERO));
+    }
+
+    #[test]
+    fn products_that_cancel_are_exact() {
+        // (1 + e)(1 - e) - 1 = -e^2.
+        let e = f64::EPSILON;
+        let mut sum = Expansion::ZERO;
+        sum.add_product::<Dekker>(1.0 + e, 1.0 - e);
+        sum.add(-1.0);
+        assert_eq!(sum.rounded(), Double::from(-e * e));
+        let mut other = Expansion::ZERO;
+        other.add_double_product::<Dekker>(Double::sum(1.0, e * e), Double::sum(1.0, -e * e));
+        other.add(-1.0);
+        assert_eq!(other.rounded(), Double::from(-e * e * e * e));
+    }
 }

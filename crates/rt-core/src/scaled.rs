@@ -166,7 +166,8 @@ impl Candidate {
         let Candidate { t, margin, .. } = *self;
         if t - within.min > margin && within.max - t > margin {
             within.admit(t, self.part, self.root)
-        } else if within.min - t > margin || t - within.max > margin {
+        } else if within.min - t > margin || t - within.max > margin || t == within.min || t == within.max {
+            // An end with these very bits is where this crossing was reported before: it is not reported twice.
             None
         } else {
             exact()

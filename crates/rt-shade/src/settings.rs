@@ -17,14 +17,14 @@ pub enum Antialias {
     Adaptive {
         /// The largest difference of two corners in one channel, of 1.
         threshold: f64,
-        /// How often a pixel may be split: `2^depth` rows of quadrants at most.
+        /// How often a pixel may be split: `2^depth` rows of quadrants at most. Deeper than 2 only where an edge crosses it.
         depth: u32,
     },
 }
 
 impl Antialias {
     /// The adaptive way with its default threshold and depth.
-    pub const ADAPTIVE: Antialias = Antialias::Adaptive { threshold: 0.05, depth: 2 };
+    pub const ADAPTIVE: Antialias = Antialias::Adaptive { threshold: 0.05, depth: 3 };
     /// The largest `n` of [`Antialias::Grid`].
     pub const MOST_GRID: u32 = 64;
     /// The largest depth of [`Antialias::Adaptive`].

@@ -65,6 +65,11 @@ impl<'s> Tracer<'s> {
         self.seen_by_eye(ray, found)
     }
 
+    /// The nearest hits of rays from the eye.
+    pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
+        self.scene.geometry.nearest_many(rays, within, found);
+    }
+
     /// The same for a ray whose nearest hit is known.
     pub fn seen_by_eye(&mut self, ray: &Ray, found: Option<Found>) -> Color {
         self.stats.eye_rays += 1;

@@ -5,8 +5,7 @@ use super::frame::{LocalRay, Window};
 use super::packet::{PACKET, Packet};
 use super::query::{Any, Nearest, Query, Ruling};
 use super::stream::interleave;
-use super::traverse::traverse;
-use super::{Found, Geometry, is_legal};
+use super::{FindAny, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::{Interval, Ray};
 
@@ -27,6 +26,8 @@ trait Request {
     /// The answer when the ray cannot hit anything.
     fn nothing() -> Self::Answer;
     fn answer(geometry: &Geometry, ray: &Ray, query: &Self::Query) -> Self::Answer;
+    /// The answer for a ray on its own.
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Self::Answer;
 }
 
 struct NearestRequest;
@@ -49,6 +50,10 @@ impl Request for NearestRequest {
             Ruling::Contested(within) => geometry.decide(ray, within, None),
         }
     }
+    #[inline(always)]
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Option<Found> {
+        FindNearest { geometry, ray, within, from: None }.run(lanes)
+    }
 }
 
 struct AnyRequest;
@@ -67,6 +72,10 @@ impl Request for AnyRequest {
     #[inline(always)]
     fn answer(_: &Geometry, _: &Ray, query: &Any) -> bool {
         query.found
+    }
+    #[inline(always)]
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> bool {
+        FindAny { geometry, ray, within, from: None }.run(lanes)
     }
 }
 
@@ -103,14 +112,23 @@ fn block<R: Request, L: Lanes>(
     // The rays without company.
     let mut alone = [0_u16; BLOCK];
     let mut alone_count = 0;
+    let mut packet = Packet {
+        rays,
+        locals: [LocalRay::EVERYWHERE; PACKET],
+        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default())),
+        active: 0,
+    };
     for first in (0..count).step_by(PACKET) {
         let members = first..(first + PACKET).min(count);
-        let mut packet = Packet {
-            rays: &rays[members.clone()],
-            locals: [LocalRay::EVERYWHERE; PACKET],
-            queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default())),
-            active: 0,
-        };
+        packet.rays = &rays[members.clone()];
+        packet.active = 0;
+        if !go_together(packet.rays) {
+            for number in members {
+                alone[alone_count] = number as u16;
+                alone_count += 1;
+            }
+            continue;
+        }
         for (i, number) in members.clone().enumerate() {
             let (ray, within) = (&rays[number], within[number]);
             answers[number] = R::nothing();
@@ -118,19 +136,22 @@ fn block<R: Request, L: Lanes>(
                 continue;
             }
             let (local, window) = geometry.frame.enter(ray, within);
-            let mut query = R::query(within, window);
-            let seen = geometry.ask_apart(ray, &mut query).is_break();
+            let query = &mut packet.queries[i];
+            *query = R::query(within, window);
+            let seen = geometry.ask_apart(ray, query).is_break();
             match local {
                 Some(local) if !seen => {
-                    (packet.locals[i], packet.queries[i]) = (local, query);
+                    packet.locals[i] = local;
                     packet.active |= 1 << i;
                 }
-                _ => answers[number] = R::answer(geometry, ray, &query),
+                _ => answers[number] = R::answer(geometry, ray, query),
             }
         }
         let active = packet.active;
-        if let Some(beam) = packet.beam(geometry.tree.box_size) {
-            packet.traverse(lanes, geometry, &beam);
+        let places = packet.places();
+        let beam = places.as_ref().and_then(|places| places.beam(geometry.tree.box_size));
+        if let (Some(places), Some(beam)) = (places, beam) {
+            packet.traverse(lanes, geometry, &places, &beam);
             for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
             }
@@ -142,26 +163,47 @@ fn block<R: Request, L: Lanes>(
         }
     }
     let mut numbers = alone[..alone_count].iter().map(|&number| usize::from(number));
-    let start = |number: usize| {
-        let (local, window) = geometry.frame.enter(&rays[number], within[number]);
-        let mut query = R::query(within[number], window);
-        let _ = geometry.ask_apart(&rays[number], &mut query);
-        (number, &rays[number], local.unwrap_or(LocalRay::EVERYWHERE), query)
-    };
-    if geometry.tree.bytes() > CACHE {
-        interleave::<IN_FLIGHT, L, R::Query>(
-            lanes,
-            geometry,
-            || numbers.next().map(start),
-            |number, query| answers[number] = R::answer(geometry, &rays[number], &query),
-        );
-    } else {
+    if geometry.tree.bytes() <= CACHE {
         for number in numbers {
-            let (_, ray, local, mut query) = start(number);
-            let _ = traverse(lanes, &geometry.tree, &geometry.store, ray, &local, &mut query);
-            answers[number] = R::answer(geometry, ray, &query);
+            answers[number] = R::one(lanes, geometry, &rays[number], within[number]);
         }
+        return;
     }
+    // The next ray that has to go down the tree; those before it are answered.
+    let answers = core::cell::RefCell::new(answers);
+    let next = || {
+        for number in numbers.by_ref() {
+            let (ray, within) = (&rays[number], within[number]);
+            let mut nothing = R::nothing();
+            if is_legal(ray, within) {
+                let (local, window) = geometry.frame.enter(ray, within);
+                let mut query = R::query(within, window);
+                let seen = geometry.ask_apart(ray, &mut query).is_break();
+                match local {
+                    Some(local) if !seen => return Some((number, ray, local, query)),
+                    _ => nothing = R::answer(geometry, ray, &query),
+                }
+            }
+            answers.borrow_mut()[number] = nothing;
+        }
+        None
+    };
+    interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
+        answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
+    });
+}
+
+/// A glance whether rays may make a beam: whether the first, the middle and the last have much the same direction.
+/// Only time depends on it.
+#[inline(always)]
+fn go_together(rays: &[Ray]) -> bool {
+    let (Some(first), Some(last), Some(middle)) = (rays.first(), rays.last(), rays.get(rays.len() / 2))
+    else {
+        return false;
+    };
+    let most = first.direction.abs().max_element() * 0.25;
+    let near = |ray: &Ray| (ray.direction - first.direction).abs().max_element() <= most;
+    near(last) && near(middle)
 }
 
 impl Geometry {

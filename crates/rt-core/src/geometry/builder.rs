@@ -100,7 +100,10 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
     build_node(items, 0, whole, &mut nodes);
     number_by_kind(items, &mut nodes);
-    nodes.shrink_to_fit();
+    // Shrinking in place would copy them to pages of common size.
+    let mut exact = vec_on_large_pages(nodes.len());
+    exact.append(&mut nodes);
+    let nodes = exact;
     let size = |item: &Item| (0..3).map(|k| f64::from(item.max[k] - item.min[k])).sum::<f64>() / 3.0;
     let box_size = items.iter().map(size).sum::<f64>() / items.len() as f64;
     Tree { nodes, box_size }
@@ -112,16 +115,27 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
     nodes.push(Node::EMPTY);
     let mut parts = [Part { start: 0, ..whole }; 8];
     let mut count = 1;
+    // The widest of the parts that need a node of their own is divided first. When none does, the smallest part that
+    // fits is dissolved: all its items get a lane here, which spares its node.
+    let mut dissolving = [false; 8];
     while count < 8 {
-        let divisible = parts[..count].iter().enumerate().filter(|(_, part)| part.count > 1);
-        let Some(widest) = divisible
-            .max_by(|(_, a), (_, b)| a.bounds.half_area().total_cmp(&b.bounds.half_area()))
-            .map(|(i, _)| i)
-        else {
-            break;
+        let free = 8 - count;
+        let wide = |part: &Part| part.count > 8;
+        let chosen = if parts[..count].iter().any(wide) {
+            (0..count)
+                .filter(|&i| wide(&parts[i]))
+                .max_by(|&i, &j| parts[i].bounds.half_area().total_cmp(&parts[j].bounds.half_area()))
+        } else {
+            (0..count)
+                .filter(|&i| parts[i].count > 1 && parts[i].count - 1 <= free)
+                .min_by_key(|&i| (!dissolving[i], parts[i].count <= 2, parts[i].count))
         };
-        let part = parts[widest];
-        (parts[widest], parts[count]) = split(&mut items[part.start..part.start + part.count], part);
+        let Some(chosen) = chosen else { break };
+        let part = parts[chosen];
+        if part.count <= 8 {
+            (dissolving[chosen], dissolving[count]) = (true, true);
+        }
+        (parts[chosen], parts[count]) = split(&mut items[part.start..part.start + part.count], part);
         count += 1;
     }
     let parts = &mut parts[..count];
@@ -261,6 +275,12 @@ impl Plane {
     }
 }
 
+/// The nodes that so many items fill: parts that fill theirs make a smaller tree.
+#[inline(always)]
+fn nodes_for(items: u32) -> f32 {
+    items.div_ceil(8) as f32
+}
+
 /// The plane of least cost, if the centres differ.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let mut centers = Bounds::EMPTY;
@@ -298,13 +318,13 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
         for bin in (1..count).rev() {
             all.add(&boxes[bin][axis]);
             number += counts[bin][axis];
-            cost_right[bin] = all.half_area() * number as f32;
+            cost_right[bin] = all.half_area() * nodes_for(number);
         }
         (all, number) = (Bounds::EMPTY, 0);
         for bin in 1..count {
             all.add(&boxes[bin - 1][axis]);
             number += counts[bin - 1][axis];
-            let cost = all.half_area() * number as f32 + cost_right[bin];
+            let cost = all.half_area() * nodes_for(number) + cost_right[bin];
             if number > 0 && number < total && best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, axis, bin));
             }

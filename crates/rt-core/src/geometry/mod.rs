@@ -9,6 +9,9 @@
 //! roundings could have exchanged them, the order is that of their refined parameters ([`Surface::t`]); at equal ones,
 //! leaving a solid comes before entering one (`direction . normal > 0` first), then the order of adding.
 
+// `!(a < b)` is meant where it is written: it holds for NaN too.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod batch;
 mod builder;
 mod frame;

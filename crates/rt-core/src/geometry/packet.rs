@@ -18,10 +18,18 @@ pub(super) const PACKET: usize = 16;
 const FEWEST: u32 = 4;
 
 /// A beam visits as many boxes as cross it. Up to this many times those that cross a ray, it still costs less than its
-/// sixteen rays one by one (measured: from 10^2 to 10^6 spheres; ../rivals/acceleration).
+/// sixteen rays one by one: it decides time only.
 const MOST_SPREAD: f64 = 64.0;
 
-/// The rays of a packet in kernel coordinates.
+/// The rays of a packet in kernel coordinates, by axis. Places without a ray repeat another.
+pub(super) struct Places {
+    origin: [[f64; PACKET]; 3],
+    direction: [[f64; PACKET]; 3],
+    /// The largest error radius of all.
+    error: f64,
+}
+
+/// The rays of a packet and their queries.
 pub(super) struct Packet<'a, Q> {
     pub rays: &'a [Ray],
     pub locals: [LocalRay; PACKET],
@@ -30,88 +38,75 @@ pub(super) struct Packet<'a, Q> {
     pub active: u32,
 }
 
-/// Least and greatest.
-fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| {
-        [if x < least { x } else { least }, if x > most { x } else { most }]
-    })
+/// Least and greatest, in halves, so that the compiler uses whole registers.
+#[inline(always)]
+fn span(values: &[f64; PACKET]) -> [f64; 2] {
+    let (mut least, mut most) = (*values, *values);
+    let mut half = PACKET / 2;
+    while half > 0 {
+        for i in 0..half {
+            least[i] = if least[i] < least[i + half] { least[i] } else { least[i + half] };
+            most[i] = if most[i] > most[i + half] { most[i] } else { most[i + half] };
+        }
+        half /= 2;
+    }
+    [least[0], most[0]]
+}
+
+/// The greatest.
+#[inline(always)]
+fn greatest(values: &[f32; PACKET]) -> f32 {
+    let mut most = *values;
+    let mut half = PACKET / 2;
+    while half > 0 {
+        for i in 0..half {
+            most[i] = if most[i] > most[i + half] { most[i] } else { most[i + half] };
+        }
+        half /= 2;
+    }
+    most[0]
 }
 
 impl<Q: Query> Packet<'_, Q> {
-    fn active(&self) -> impl Iterator<Item = usize> + use<Q> {
-        let mut mask = self.active;
-        core::iter::from_fn(move || {
-            let i = mask.trailing_zeros() as usize;
-            mask &= mask.wrapping_sub(1);
-            (i < PACKET).then_some(i)
-        })
-    }
-
-    /// The beam that holds the rays, if they go side by side closely enough. `box_size` is that of a typical shape.
+    /// The rays by axis, if there are enough.
     #[inline(always)]
-    pub fn beam(&self, box_size: f64) -> Option<BeamShape> {
+    pub fn places(&self) -> Option<Places> {
         if self.active.count_ones() < FEWEST {
             return None;
         }
-        let first = &self.locals[self.active().next()?];
-        let size = first.direction.abs();
-        let axis = if size.x >= size.y && size.x >= size.z {
-            0
-        } else if size.y >= size.z {
-            1
-        } else {
-            2
-        };
-        let sign = 1.0_f64.copysign(first.direction[axis]);
-        let locals = || self.active().map(|i| &self.locals[i]);
-        // Not for slopes beyond 4, nor for rays without a place.
-        if !locals().all(|l| l.direction[axis] * sign >= 0.5 && l.origin.is_finite() && l.error.is_finite()) {
-            return None;
+        let any = self.active.trailing_zeros() as usize & (PACKET - 1);
+        let mut places = Places { origin: [[0.0; PACKET]; 3], direction: [[0.0; PACKET]; 3], error: 0.0 };
+        for i in 0..PACKET {
+            let local = &self.locals[if self.active >> i & 1 == 1 { i } else { any }];
+            for axis in 0..3 {
+                places.origin[axis][i] = local.origin[axis];
+                places.direction[axis][i] = local.direction[axis];
+            }
+            let error = local.error.x + local.error.y + local.error.z;
+            places.error = if error > places.error { error } else { places.error };
         }
-        let [least, most] = span(locals().map(|l| l.origin[axis]));
-        let plane = if sign > 0.0 { least } else { most };
-        let others = [(axis + 1) % 3, (axis + 2) % 3];
-        let slope_of = |l: &LocalRay, k: usize| l.direction[k] / (l.direction[axis] * sign);
-        let slope = others.map(|k| span(locals().map(|l| slope_of(l, k))));
-        let position = others.map(|k| {
-            span(locals().map(|l| l.origin[k] - slope_of(l, k) * ((l.origin[axis] - plane) * sign)))
-        });
-        // Where the beam is half a scene deep.
-        let spread = |i: usize| {
-            let ([a, b], [c, d]) = (position[i], slope[i]);
-            1.0 + ((b - a) + (d - c) * 0.5) / box_size
-        };
-        // These quotients and products round by a few u of numbers below 4 * 16: the error radius of 2^-40 of them is
-        // ample, and far below the resolution of f32.
-        let error = locals().fold(0.0, |most: f64, l| most.max(l.error.max_element()));
-        let error = error + crate::math::exp2i(-40);
-        (spread(0) * spread(1) <= MOST_SPREAD).then_some(BeamShape {
-            axis,
-            sign,
-            plane,
-            position,
-            slope,
-            error,
-        })
+        Some(places)
     }
 
     /// Shows each ray's query the shapes that the ray may hit.
     #[inline(always)]
-    pub fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, shape: &BeamShape) {
+    pub fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, places: &Places, shape: &BeamShape) {
         let beam = Beam::new(lanes, shape);
-        let mut rays = [EightRays::default(); 2];
+        let rays = [0, 8].map(|first| EightRays::new(&places.origin, &places.direction, first));
         // The end of each ray, and that of the beam at the same place.
         let mut limits = [[f32::NEG_INFINITY; 8]; 2];
         let mut depths = [f32::NEG_INFINITY; PACKET];
-        let mut far = 0.0_f64;
-        for i in self.active() {
-            let local = &self.locals[i];
-            rays[i / 8].set(i % 8, local.origin, local.direction);
-            far = far.max(local.origin.abs().max_element());
-            (limits[i / 8][i % 8], depths[i]) = self.ends(i, shape);
+        for i in 0..PACKET {
+            if self.active >> i & 1 == 1 {
+                (limits[i / 8][i % 8], depths[i]) = self.ends(i, shape);
+            }
         }
+        let [least, most] = places.origin.iter().map(span).fold([0.0, 0.0], |[a, b]: [f64; 2], [c, d]| {
+            [if c < a { c } else { a }, if d > b { d } else { b }]
+        });
+        let far = if most > -least { most } else { -least };
         let pad = at_least((far + 1.0) * crate::math::exp2i(-21) + shape.error);
-        let mut end = depths.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+        let mut end = greatest(&depths);
 
         let mut stack = Stack::<STACK>::default();
         let mut index = 0;
@@ -164,7 +159,7 @@ impl<Q: Query> Packet<'_, Q> {
                     if self.active == 0 {
                         return;
                     }
-                    end = depths.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a });
+                    end = greatest(&depths);
                 }
             }
             return;
@@ -179,5 +174,46 @@ impl<Q: Query> Packet<'_, Q> {
         let start = (local.origin[shape.axis] - shape.plane) * shape.sign;
         let depth = start + f64::from(limit) * (local.direction[shape.axis] * shape.sign);
         (limit, at_least(depth + shape.error))
+    }
+}
+
+impl Places {
+    /// The beam that holds the rays, if they go side by side closely enough. `box_size` is that of a typical shape.
+    #[inline(always)]
+    pub fn beam(&self, box_size: f64) -> Option<BeamShape> {
+        let size = self.direction.map(|d| d[0].abs());
+        let axis = if size[0] >= size[1] && size[0] >= size[2] {
+            0
+        } else if size[1] >= size[2] {
+            1
+        } else {
+            2
+        };
+        let sign = 1.0_f64.copysign(self.direction[axis][0]);
+        let depth = self.direction[axis].map(|d| d * sign);
+        // Not for slopes beyond 4, nor for rays without a place.
+        if !(span(&depth)[0] >= 0.5 && self.error < 1.0) {
+            return None;
+        }
+        let inverse = depth.map(|d| 1.0 / d);
+        let [least, most] = span(&self.origin[axis]);
+        let plane = if sign > 0.0 { least } else { most };
+        let (mut position, mut slope) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+        let mut spread = 1.0;
+        for i in 0..2 {
+            let k = (axis + 1 + i) % 3;
+            let slopes: [f64; PACKET] = core::array::from_fn(|j| self.direction[k][j] * inverse[j]);
+            let positions: [f64; PACKET] = core::array::from_fn(|j| {
+                self.origin[k][j] - slopes[j] * ((self.origin[axis][j] - plane) * sign)
+            });
+            (position[i], slope[i]) = (span(&positions), span(&slopes));
+            // Where the beam is half a scene deep.
+            let ([a, b], [c, d]) = (position[i], slope[i]);
+            spread *= 1.0 + ((b - a) + (d - c) * 0.5) / box_size;
+        }
+        // These quotients and products round by a few u of numbers below 4 * 16 (rays begin within 8 of the scene):
+        // 2^-40 is ample, and far below the resolution of f32.
+        let error = self.error + crate::math::exp2i(-40);
+        (spread <= MOST_SPREAD).then_some(BeamShape { axis, sign, plane, position, slope, error })
     }
 }

@@ -1,38 +1,34 @@
 //! Several rays against one box, and a beam that holds them against eight.
 
 use super::{Boxes, Lanes, Row};
-use glam::DVec3;
 
 /// Eight rays side by side against one box.
 ///
-/// Per axis, `((x -+ pad) - o) * r` with `o` and `r` rounded to nearest; `pad` is at least 2^-22 of the largest
+/// Per axis, `((x -+ pad) - o) * r` with `o` and `d` rounded to nearest; `pad` is at least 2^-22 of the largest
 /// |coordinate| of the origins and the scene (1), plus the error radius, so that it outweighs the roundings of `o` and
-/// of the difference (3 * 2^-24). Those of `r` and the product, 3 * 2^-24 of the parameter, are outweighed by a factor
-/// of 1 -+ 2^-22 on entry and exit. Either end of a slab may come first: rays of all signs go side by side.
+/// of the difference (3 * 2^-24). Those of `d`, `r = 1 / d` and the product, 3 * 2^-24 of the parameter, are outweighed
+/// by a factor of 1 -+ 2^-22 on entry and exit. Either end of a slab may come first: rays of all signs go side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct EightRays {
     origin: [[f32; 8]; 3],
     inverse: [[f32; 8]; 3],
 }
 
-impl Default for EightRays {
-    fn default() -> Self {
-        EightRays { origin: [[0.0; 8]; 3], inverse: [[1.0; 8]; 3] }
-    }
-}
-
 impl EightRays {
-    /// Puts a ray into a lane below 8.
+    /// The rays with these origins and directions, by axis, beginning at `first`.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3) {
-        const LEAST: f64 = crate::math::exp2i(-100);
-        let lane = lane & 7;
+    pub fn new<const N: usize>(origin: &[[f64; N]; 3], direction: &[[f64; N]; 3], first: usize) -> Self {
+        const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
+        let mut rays = EightRays { origin: [[0.0; 8]; 3], inverse: [[1.0; 8]; 3] };
         for axis in 0..3 {
-            let d = direction[axis];
-            let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
-            self.origin[axis][lane] = origin[axis] as f32;
-            self.inverse[axis][lane] = (1.0 / d) as f32;
+            let (o, d) = (&origin[axis][first..], &direction[axis][first..]);
+            for (lane, (o, d)) in o.iter().zip(d).take(8).enumerate() {
+                let d = *d as f32;
+                rays.origin[axis][lane] = *o as f32;
+                rays.inverse[axis][lane] = 1.0 / (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
+            }
         }
+        rays
     }
 
     /// The rays that may meet the box, grown by `pad`, between 0 and their limit.

@@ -197,7 +197,7 @@ fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
 /// A place that halves the bracket: the mean of the ends when they are near each other, otherwise of their exponents.
 fn middle(low: Double, high: Double) -> Double {
     let (a, b) = (low.high, high.high);
-    let near = exponent(b - a) <= exponent(if a.abs() > b.abs() { a } else { b }) - 1;
+    let near = exponent(b - a) < exponent(if a.abs() > b.abs() { a } else { b });
     if near {
         return (low.scale_exact(0.5)) + high.scale_exact(0.5);
     }

@@ -95,14 +95,28 @@ impl Cuboid {
         if !ray.is_valid() { None } else { run(Span { cuboid: self, ray }) }
     }
 
+    /// The first crossing, when `f64` leaves a doubt. An interval that ends exactly at a parameter that `f64` gives
+    /// was made from that hit, and does not contain it.
     #[cold]
     #[inline(never)]
     fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         let [near, far] = self.span_exactly(ray)?;
-        within.admit(near.t, near.face, 0).or_else(|| within.admit(far.t, far.face, 1))
+        let slabs = self.slabs(ray);
+        let (entry, leave) = slabs.ends();
+        let ended = |t: f64| slabs.sound && (t == within.min || t == within.max);
+        let first = if ended(entry) { None } else { within.admit(near.t, near.face, 0) };
+        first.or_else(|| if ended(leave) { None } else { within.admit(far.t, far.face, 1) })
     }
 
-    /// The crossings with a box along the world's axes; `None` in doubt.
+    #[inline(always)]
+    fn slabs(&self, ray: &Ray) -> Slabs {
+        match &self.turn {
+            None => self.span(ray),
+            Some(turn) => self.span_turned(turn, ray),
+        }
+    }
+
+    /// The crossings with a box along the world's axes.
     #[inline(always)]
     fn span(&self, ray: &Ray) -> Slabs {
         let inverse = 1.0 / ray.direction;
@@ -153,57 +167,53 @@ struct Slabs {
 }
 
 impl Slabs {
+    /// Where the line enters and leaves.
+    #[inline(always)]
+    fn ends(&self) -> (f64, f64) {
+        let (a, b) = (self.a, self.b);
+        let entry = greater(lesser(a.x, b.x), greater(lesser(a.y, b.y), lesser(a.z, b.z)));
+        let leave = lesser(greater(a.x, b.x), lesser(greater(a.y, b.y), greater(a.z, b.z)));
+        (entry, leave)
+    }
+
     /// The first crossing; `Err` in doubt.
     #[inline(always)]
     fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
         let (a, b) = (self.a, self.b);
         let near = DVec3::new(lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z));
         let far = DVec3::new(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z));
-        let (i, entry, before) = greatest(near);
-        // Products instead of `t - 4 u |t|`: an infinite parameter stays infinite.
-        let low = |t: f64| lesser(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) - self.slack;
-        let high = |t: f64| greater(t * (1.0 - 4.0 * U), t * (1.0 + 4.0 * U)) + self.slack;
-        let leave = lesser(far.x, lesser(far.y, far.z));
-        if !self.sound {
+        let (entry, leave) = self.ends();
+        // Two parameters that err by 4 u of themselves can only be out of order when each is within 9 u of the
+        // other: `apart` needs the smaller one alone, which is finite when one of them is infinite.
+        let apart = |t: f64, s: f64| (t - s).abs() > (9.0 * U) * lesser(t.abs(), s.abs()) + 2.0 * self.slack;
+        if !(self.sound & apart(entry, leave)) {
             return Err(());
         }
-        if low(entry) > high(leave) {
+        if entry > leave {
             return Ok(None);
         }
-        if !(high(entry) < low(leave)) {
+        let enters = entry > within.min;
+        let (t, other) = if enters {
+            (entry, greater(lesser(near.x, near.y), lesser(greater(near.x, near.y), near.z)))
+        } else {
+            (leave, lesser(greater(far.x, far.y), greater(lesser(far.x, far.y), far.z)))
+        };
+        // On which side of the ends it lies has to be certain, and which face it is.
+        let clear = |t: f64, end: f64| (t - end).abs() > (4.0 * U) * t.abs() + self.slack;
+        if !(clear(entry, within.min) & clear(t, within.min) & clear(t, within.max)) {
             return Err(());
         }
-        // Which face it is has to be certain, and on which side of the ends of the interval it lies. An end that
-        // equals a parameter was made from that hit, and excludes it.
-        if low(entry) > within.min {
-            if high(entry) < within.max && low(entry) > high(before) {
-                let back = !(self.backward[i] > 0.0);
-                return Ok(within.admit(entry, 2 * i as u32 + back as u32, 0));
-            }
-            return if low(entry) > within.max || entry == within.max { Ok(None) } else { Err(()) };
-        }
-        if high(leave) < within.min || leave == within.min || !(within.min < within.max) {
+        if !within.contains(t) {
             return Ok(None);
         }
-        if (high(entry) < within.min || entry == within.min) && low(leave) > within.min {
-            if low(leave) > within.max || leave == within.max {
-                return Ok(None);
-            }
-            let (j, exit, after) = greatest(-far);
-            if high(leave) < within.max && low(-after) > high(-exit) {
-                let forward = self.backward[j] > 0.0;
-                return Ok(within.admit(-exit, 2 * j as u32 + forward as u32, 1));
-            }
+        if !apart(t, other) {
+            return Err(());
         }
-        Err(())
+        let planes = if enters { near } else { far };
+        let axis = (t == planes.y) as usize + 2 * (t == planes.z) as usize;
+        let backward = [self.backward.x < 0.0, self.backward.y < 0.0, self.backward.z < 0.0][axis.min(2)];
+        Ok(within.admit(t, 2 * axis as u32 + (backward == enters) as u32, !enters as u32))
     }
-}
-
-/// The index of the greatest component, the component, and the greatest of the others.
-#[inline(always)]
-fn greatest(v: DVec3) -> (usize, f64, f64) {
-    let (i, most, rest) = if v.x > v.y { (0, v.x, v.y) } else { (1, v.y, v.x) };
-    if v.z > most { (2, v.z, most) } else { (i, most, greater(rest, v.z)) }
 }
 
 /// One crossing of the line: the face, and the parameter correctly rounded.
@@ -320,7 +330,7 @@ fn turned_slab<P: Product>(
     }
     let mut high = low;
     high.add(size * scale);
-    (low.to_double(), high.to_double(), along.to_double())
+    (low.rounded(), high.rounded(), along.rounded())
 }
 
 /// A point of a face in the box's own axes, without the coordinate across it.
@@ -342,10 +352,7 @@ impl Task for Along<'_> {
 impl Primitive for Cuboid {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let slabs = match &self.turn {
-            None => self.span(ray),
-            Some(turn) => self.span_turned(turn, ray),
-        };
+        let slabs = self.slabs(ray);
         match slabs.first(within) {
             Ok(hit) => hit,
             Err(()) => self.hit_exactly(ray, within),
@@ -484,4 +491,87 @@ fn lesser(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit() -> Cuboid {
+        Cuboid::new([0.0; 3], [1.0; 3]).unwrap()
+    }
+
+    fn faces(cuboid: &Cuboid, ray: &Ray) -> Vec<(f64, u32)> {
+        let mut found = Vec::new();
+        cuboid.crossings(ray, Interval::LINE, &mut |hit| found.push((hit.t(), hit.part())));
+        found
+    }
+
+    #[test]
+    fn faces_are_numbered_by_axis_and_side() {
+        for k in 0..3 {
+            let axis = DVec3::AXES[k];
+            let ray = Ray::new(DVec3::splat(0.5) - axis * 2.0, axis);
+            assert_eq!(faces(&unit(), &ray), [(1.5, 2 * k as u32), (2.5, 2 * k as u32 + 1)]);
+            let hit = unit().hit(&ray, Interval::FORWARD).unwrap();
+            assert_eq!(unit().surface(&ray, hit).normal, -axis);
+            let back = unit().hit(&ray, Interval::new(2.0, 9.0)).unwrap();
+            assert_eq!((back.part(), back.root()), (2 * k as u32 + 1, 1));
+        }
+    }
+
+    #[test]
+    fn a_touched_edge_is_no_hit_but_a_face_is_not_lost() {
+        // Past the edge x = 0, y = 1, at 45 degrees.
+        let touching = Ray::new([-1.0, 0.0, 0.5], [1.0, 1.0, 0.0]);
+        assert_eq!(faces(&unit(), &touching), []);
+        assert_eq!(faces(&unit(), &Ray::new([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0])).len(), 2);
+        // Along the face x = 0: zero times infinity.
+        for zero in [0.0, -0.0] {
+            let along = Ray::new([0.0, 0.5, -1.0], [zero, zero, 1.0]);
+            assert_eq!(faces(&unit(), &along), [(1.0, 4), (2.0, 5)]);
+            assert_eq!(unit().hit(&along, Interval::FORWARD).map(|h| h.t()), Some(1.0));
+        }
+        assert_eq!(faces(&unit(), &Ray::new([-f64::MIN_POSITIVE, 0.5, -1.0], [0.0, 0.0, 1.0])), []);
+    }
+
+    #[test]
+    fn a_flat_box_is_hit_from_both_sides() {
+        let tile = Cuboid::new([0.0, 2.0, 0.0], [1.0, 2.0, 1.0]).unwrap();
+        let down = Ray::new([0.5, 3.0, 0.5], [0.0, -1.0, 0.0]);
+        assert_eq!(tile.hit(&down, Interval::FORWARD).map(|h| (h.t(), h.part())), Some((1.0, 3)));
+        assert_eq!(faces(&tile, &down), [(1.0, 3), (1.0, 2)]);
+    }
+
+    #[test]
+    fn a_turned_box_keeps_its_own_axes() {
+        let turn =
+            Similarity::IDENTITY.rotated(DVec3::Z, 90.0).unwrap().translated([10.0, 0.0, 0.0]).unwrap();
+        let cuboid = Cuboid::new([0.0; 3], [1.0, 2.0, 3.0]).unwrap().transformed(&turn).unwrap();
+        assert_eq!(cuboid.axes(), [DVec3::Y, -DVec3::X, DVec3::Z]);
+        // In the world it fills x from 8 to 10, y from 0 to 1: its own x axis is the world's y.
+        let ray = Ray::new([9.5, -4.0, 1.0], [0.0, 2.0, 0.0]);
+        let hit = cuboid.hit(&ray, Interval::FORWARD).unwrap();
+        let surface = cuboid.surface(&ray, hit);
+        assert_eq!((surface.t, hit.part(), surface.normal), (2.0, 0, -DVec3::Y));
+        assert_eq!(surface.object_point, DVec3::new(0.0, 0.5, 1.0));
+    }
+
+    #[test]
+    fn leaving_inside_always_ends() {
+        let ray = Ray::new([0.5, 0.5, -1.0], [0.0, 0.0, 1.0]);
+        let hit = unit().hit(&ray, Interval::FORWARD).unwrap();
+        let from = unit().surface(&ray, hit).departure(0, hit, Side::Inside);
+        let (start, within) = from.through(ray.direction);
+        let exit = unit().hit_leaving(&start, within, &from).unwrap();
+        assert_eq!((exit.t(), exit.part()), (1.0, 5));
+        let outward = unit().surface(&ray, hit).departure(0, hit, Side::Outside);
+        assert_eq!(unit().hit_leaving(&start, within, &outward), None);
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Cuboid::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]), Err(Error::Unordered { .. })));
+        assert!(matches!(Cuboid::new([f64::NAN; 3], [1.0; 3]), Err(Error::NotFinite { .. })));
+    }
 }

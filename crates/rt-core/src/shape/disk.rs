@@ -1,6 +1,6 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
 use crate::double::Double;
 use crate::kernel::{Product, Task, run};
 use crate::math::sqrt;
@@ -17,9 +17,9 @@ use glam::DVec3;
 pub struct Disk {
     center: DVec3,
     /// As given, times a power of two: largest component in `[1, 2)`.
-    normal: DVec3,
+    scaled_normal: DVec3,
     radius: f64,
-    unit_normal: DVec3,
+    normal: DVec3,
     axes: [DVec3; 2],
 }
 
@@ -35,8 +35,8 @@ impl Disk {
         let (normal, _) = flat::prescaled(flat::checked_direction("disk normal", normal.into())?);
         let radius = checked_length("disk radius", radius)?;
         let (first, second) = flat::plane_axes(normal);
-        let unit_normal = flat::unit(flat::doubles(normal));
-        Ok(Disk { center, normal, radius, unit_normal, axes: [first, second] })
+        let unit = flat::unit(flat::doubles(normal));
+        Ok(Disk { center, scaled_normal: normal, radius, normal: unit, axes: [first, second] })
     }
 
     /// The centre: the anchor of local and texture coordinates.
@@ -46,7 +46,7 @@ impl Disk {
 
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
-        self.unit_normal
+        self.normal
     }
 
     /// The radius.
@@ -64,30 +64,32 @@ impl Disk {
     /// # Errors
     /// As [`Disk::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        Disk::new(by.point(self.center), by.direction(self.normal), self.radius * by.scale())
+        Disk::new(by.point(self.center), by.direction(self.scaled_normal), self.radius * by.scale())
     }
 
     /// How far it reaches from its centre along each axis, rounded up: `radius sqrt(1 - n_i^2)`.
     fn reach(&self) -> DVec3 {
-        let n = self.unit_normal;
+        let n = self.normal;
         // sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates round once more.
         let reach = |a: f64, b: f64| self.radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
         DVec3::new(reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y))
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let plane = ExactPlane { anchor: self.center, normal: flat::doubles(self.normal), offset: 0.0 };
-        let mut at = flat::meet(&plane, ray, || flat::expansions(self.normal))?;
-        flat::settle(&mut at, self.normal);
+        let plane =
+            ExactPlane { anchor: self.center, normal: flat::doubles(self.scaled_normal), offset: 0.0 };
+        let mut at = flat::meet(&plane, ray, || flat::expansions(self.scaled_normal))?;
+        flat::settle(&mut at, self.scaled_normal);
         Some(at)
     }
 
-    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
-        if !ray.is_valid() || rough == within.min || rough == within.max {
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
             return None;
         }
         let at = self.meet(ray)?;
@@ -111,7 +113,7 @@ impl Task for InDisk<'_> {
         let shift = self.at.power - power;
         let part = |x: Double| Double { high: times_power(x.high, shift), low: times_power(x.low, shift) };
         let [x, y, z] = self.at.local.map(part);
-        let far = |x: Double| !(x.high.abs() <= 4.0);
+        let far = |x: Double| x.high.is_nan() || x.high.abs() > 4.0;
         if far(x) || far(y) || far(z) {
             return false;
         }
@@ -123,34 +125,19 @@ impl Task for InDisk<'_> {
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let w = self.center - ray.origin;
-        let n = self.normal * w;
-        let d = self.normal * ray.direction;
-        let denominator = d.x + d.y + d.z;
-        let inverse = 1.0 / denominator;
-        let t = (n.x + n.y + n.z) * inverse;
-        // As for the plane, with one more rounding in the quotient: |dt| |denominator| <= slack.
-        let (n, d) = (n.abs(), d.abs());
-        let sizes = d.x + d.y + d.z;
-        let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
-        // The point t d - w errs in each coordinate by |dt| |d| and three roundings; `error` bounds the sum of all
-        // three. |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
-        // coordinates' sizes; the squares round by 4 u of themselves.
-        let p = ray.direction * t - w;
-        let (w, v, q) = (w.abs(), ray.direction.abs(), p.abs());
-        let error =
-            (v.x + v.y + v.z) * (slack * inverse.abs() + (3.0 * U) * t.abs()) + (3.0 * U) * (w.x + w.y + w.z);
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
+        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
+        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
+        let p = ray.direction * rough.t - rough.w;
         let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
-        let doubt = error * ((q.x + q.y + q.z) + self.radius) + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
-        let from_min = (t - within.min).abs() * denominator.abs();
-        let from_max = (t - within.max).abs() * denominator.abs();
-        let certain = slack > LEAST_CERTAIN && flat::crosses(denominator, sizes);
-        if certain && rho2 - r2 > doubt {
+        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
+        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
+        if rough.sound & (rho2 - r2 > doubt) {
             None
-        } else if certain && r2 - rho2 > doubt && from_min > slack && from_max > slack {
-            within.admit(t, 0, 0)
+        } else if rough.decides(within) & (r2 - rho2 > doubt) {
+            within.admit(rough.t, 0, 0)
         } else {
-            self.hit_exactly(ray, within, t)
+            self.hit_exactly(ray, within)
         }
     }
 
@@ -163,13 +150,13 @@ impl Primitive for Disk {
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let Some(at) = self.meet(ray) else {
             // Only for a ray that this disk gave no hit for.
-            return Surface::new(hit.t(), self.center, DVec3::ZERO, self.unit_normal, self.radius);
+            return Surface::new(hit.t(), self.center, DVec3::ZERO, self.normal, self.radius);
         };
         // The hit is inside; what double-double leaves beside the rim is noise.
         let half = self.reach();
         let point = at.point(self.center).clamp(self.center - half, self.center + half);
         let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point))
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
             .with_uv(uv)
     }
@@ -184,4 +171,42 @@ impl Primitive for Disk {
     }
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_belongs_to_it() {
+        let disk = Disk::new([0.0; 3], [0.0, 0.0, 2.0], 5.0).unwrap();
+        let down = |x: f64, y: f64| disk.hit(&Ray::new([x, y, 7.0], [0.0, 0.0, -2.0]), Interval::FORWARD);
+        assert_eq!(down(3.0, 4.0).map(|h| h.t()), Some(3.5));
+        assert_eq!(down(3.0, 4.0_f64.next_up()), None);
+        assert!(down(3.0, 4.0_f64.next_down()).is_some());
+    }
+
+    #[test]
+    fn rims_of_extreme_sizes() {
+        for radius in [1e-150, 1e150] {
+            let disk = Disk::new([0.0; 3], [0.0, 1.0, 0.0], radius).unwrap();
+            let at = |x: f64| disk.hit(&Ray::new([x, radius, 0.0], [0.0, -1.0, 0.0]), Interval::FORWARD);
+            assert!(at(radius).is_some() && at(radius.next_up()).is_none());
+        }
+    }
+
+    #[test]
+    fn bounds_of_a_tilted_disk() {
+        let disk = Disk::new([10.0, 0.0, 0.0], [0.0, 0.6, 0.8], 2.0).unwrap();
+        let bounds = disk.bounds().unwrap();
+        assert!((bounds.max - DVec3::new(12.0, 1.6, 1.2)).abs().max_element() < 1e-14);
+        assert!(bounds.contains(DVec3::new(12.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], 0.0), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], f64::NAN), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
+    }
 }

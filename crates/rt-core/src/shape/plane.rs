@@ -4,7 +4,7 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, Meeting, Rough};
 use crate::scaled::checked_point;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
@@ -20,8 +20,8 @@ use glam::DVec3;
 pub struct Plane {
     point: DVec3,
     /// As given, times a power of two: largest component in `[1, 2)`.
+    scaled_normal: DVec3,
     normal: DVec3,
-    unit_normal: DVec3,
     axes: [DVec3; 2],
 }
 
@@ -34,7 +34,12 @@ impl Plane {
         let point = checked_point("plane point", point.into())?;
         let (normal, _) = flat::prescaled(flat::checked_direction("plane normal", normal.into())?);
         let (first, second) = flat::plane_axes(normal);
-        Ok(Plane { point, normal, unit_normal: flat::unit(flat::doubles(normal)), axes: [first, second] })
+        Ok(Plane {
+            point,
+            scaled_normal: normal,
+            normal: flat::unit(flat::doubles(normal)),
+            axes: [first, second],
+        })
     }
 
     /// The point it was made from: the anchor of local and texture coordinates.
@@ -44,7 +49,7 @@ impl Plane {
 
     /// The unit normal.
     pub fn normal(&self) -> DVec3 {
-        self.unit_normal
+        self.normal
     }
 
     /// The two unit vectors along which texture coordinates count.
@@ -57,23 +62,24 @@ impl Plane {
     /// # Errors
     /// As [`Plane::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        Plane::new(by.point(self.point), by.direction(self.normal))
+        Plane::new(by.point(self.point), by.direction(self.scaled_normal))
     }
 
     fn exact(&self) -> ExactPlane {
-        ExactPlane { anchor: self.point, normal: flat::doubles(self.normal), offset: 0.0 }
+        ExactPlane { anchor: self.point, normal: flat::doubles(self.scaled_normal), offset: 0.0 }
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        flat::meet(&self.exact(), ray, || flat::expansions(self.normal))
+        flat::meet(&self.exact(), ray, || flat::expansions(self.scaled_normal))
     }
 
-    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
-        if !ray.is_valid() || rough == within.min || rough == within.max {
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
             return None;
         }
         within.admit(self.meet(ray)?.t, 0, 0)
@@ -83,24 +89,8 @@ impl Plane {
 impl Primitive for Plane {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let n = self.normal * (self.point - ray.origin);
-        let d = self.normal * ray.direction;
-        let denominator = d.x + d.y + d.z;
-        let t = (n.x + n.y + n.z) / denominator;
-        // The numerator errs by 4 u of the sum of its terms' sizes (difference, product, two additions), the
-        // denominator by 3 u of its own, the quotient by u: |dt| |denominator| <= 4 u (sizes), the fifth pays for the
-        // roundings of this bound and of the comparisons.
-        let (n, d) = (n.abs(), d.abs());
-        let sizes = d.x + d.y + d.z;
-        let slack = (5.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
-        let from_min = (t - within.min).abs() * denominator.abs();
-        let from_max = (t - within.max).abs() * denominator.abs();
-        if from_min > slack && from_max > slack && slack > LEAST_CERTAIN && flat::crosses(denominator, sizes)
-        {
-            within.admit(t, 0, 0)
-        } else {
-            self.hit_exactly(ray, within, t)
-        }
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
+        if rough.decides(within) { within.admit(rough.t, 0, 0) } else { self.hit_exactly(ray, within) }
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -112,18 +102,12 @@ impl Primitive for Plane {
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let Some(mut at) = self.meet(ray) else {
             // Only for a ray that this plane gave no hit for.
-            return Surface::new(
-                hit.t(),
-                ray.at(hit.t()),
-                ray.at(hit.t()) - self.point,
-                self.unit_normal,
-                0.0,
-            );
+            return Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0);
         };
-        flat::settle(&mut at, self.normal);
+        flat::settle(&mut at, self.scaled_normal);
         let point = at.point(self.point);
         let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point))
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
             .with_uv(uv)
     }
@@ -137,4 +121,64 @@ impl Primitive for Plane {
     }
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_counts_in_world_axes_exactly() {
+        let floor = Plane::new([0.1, 0.0, -0.3], [0.0, 5.0, 0.0]).unwrap();
+        assert_eq!(floor.texture_axes(), [DVec3::X, DVec3::Z]);
+        let ray = Ray::new([1e6 + 0.7, 2.0, -0.25], [0.0, -3.0, 0.0]);
+        let hit = floor.hit(&ray, Interval::FORWARD).unwrap();
+        let surface = floor.surface(&ray, hit);
+        assert_eq!((surface.t, surface.normal), (2.0 / 3.0, DVec3::Y));
+        assert_eq!(surface.object_point, DVec3::new(1e6 + 0.7 - 0.1, -0.25 + 0.3, 0.0));
+        assert_eq!(surface.local.y, 0.0);
+        assert_eq!(surface.point, DVec3::new(1e6 + 0.7, 0.0, -0.25));
+    }
+
+    #[test]
+    fn the_length_of_the_normal_does_not_matter() {
+        for length in [1e-150, 1e-20, 7.0, 1e150] {
+            let plane = Plane::new([0.0, 1.0, 0.0], DVec3::new(0.0, 0.6, 0.8) * length).unwrap();
+            let ray = Ray::new([0.0, 5.0, 0.0], [0.0, -1e-150, 0.0]);
+            let hit = plane.hit(&ray, Interval::FORWARD).unwrap();
+            assert!((plane.surface(&ray, hit).t / 4e150 - 1.0).abs() < 1e-15);
+            assert!((plane.normal() - DVec3::new(0.0, 0.6, 0.8)).length() < 4e-16);
+        }
+    }
+
+    #[test]
+    fn rays_in_the_plane_or_beside_it_miss() {
+        let plane = Plane::new([0.0; 3], [1.0, 2.0, -3.0]).unwrap();
+        for origin in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] {
+            assert_eq!(plane.hit(&Ray::new(origin, [1.0, 1.0, 1.0]), Interval::LINE), None);
+        }
+    }
+
+    #[test]
+    fn an_interval_made_from_a_hit_does_not_contain_it() {
+        let plane = Plane::new([0.3, 0.2, 0.1], [1.0, 2.0, -3.1]).unwrap();
+        let mut random = 1_u32;
+        for _ in 0..1000 {
+            let mut number = || {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(random) / f64::from(u32::MAX) - 0.5
+            };
+            let ray = Ray::new([number(), number(), number()], [number(), number(), number()]);
+            let Some(hit) = plane.hit(&ray, Interval::LINE) else { continue };
+            assert_eq!(plane.hit(&ray, Interval::LINE.until(hit.t())), None);
+            assert_eq!(plane.hit(&ray, Interval::LINE.after(hit.t())), None);
+        }
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Plane::new([0.0; 3], [0.0; 3]), Err(Error::ZeroLength { .. })));
+        assert!(matches!(Plane::new([f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]), Err(Error::NotFinite { .. })));
+        assert!(matches!(Plane::new([0.0; 3], [0.0, f64::INFINITY, 0.0]), Err(Error::NotFinite { .. })));
+    }
 }

@@ -6,7 +6,7 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -26,7 +26,7 @@ pub struct Triangle {
     b: DVec3,
     c: DVec3,
     /// `(b - a) x (c - a)` times a power of two, largest component in `[1, 2)`.
-    normal: DVec3,
+    scaled_normal: DVec3,
     /// What rounding to `normal` left, so that both together are within 2^-104.
     normal_rest: DVec3,
     /// The power of two between `normal` and the product of the edges; NaN where that is too large, so that no
@@ -34,7 +34,7 @@ pub struct Triangle {
     area_scale: f64,
     /// The largest coordinate of the edges, in size.
     reach: f64,
-    unit_normal: DVec3,
+    normal: DVec3,
     smooth: Option<Arc<[DVec3; 3]>>,
 }
 
@@ -50,7 +50,7 @@ impl Triangle {
         let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
         let (exact, area_power) = exact_normal(a, b, c);
-        let normal = exact.map(|n| n.to_double());
+        let normal = exact.map(|n| n.rounded());
         if normal.iter().all(|n| n.high == 0.0) {
             return Err(Error::Degenerate { vertices: [a, b, c] });
         }
@@ -58,11 +58,11 @@ impl Triangle {
             a,
             b,
             c,
-            normal: DVec3::from_array(normal.map(|n| n.high)),
+            scaled_normal: DVec3::from_array(normal.map(|n| n.high)),
             normal_rest: DVec3::from_array(normal.map(|n| n.low)),
             area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
             reach,
-            unit_normal: flat::unit(normal),
+            normal: flat::unit(normal),
             smooth: None,
         })
     }
@@ -92,7 +92,7 @@ impl Triangle {
 
     /// The geometric unit normal.
     pub fn normal(&self) -> DVec3 {
-        self.unit_normal
+        self.normal
     }
 
     /// The unit normals of the corners that shading interpolates, if there are any.
@@ -113,20 +113,21 @@ impl Triangle {
     }
 
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let (high, low) = (self.normal.to_array(), self.normal_rest.to_array());
+        let (high, low) = (self.scaled_normal.to_array(), self.normal_rest.to_array());
         let normal = [0, 1, 2].map(|i| Double { high: high[i], low: low[i] });
         let plane = ExactPlane { anchor: self.a, normal, offset: 0.0 };
         let mut at = flat::meet(&plane, ray, || exact_normal(self.a, self.b, self.c).0)?;
-        flat::settle(&mut at, self.normal);
+        flat::settle(&mut at, self.scaled_normal);
         Some(at)
     }
 
-    /// The hit, when its parameter `rough` or its place leave a doubt. An interval that ends exactly at the parameter
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval, rough: f64) -> Option<Hit> {
-        if !ray.is_valid() || rough == within.min || rough == within.max {
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.a, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
             return None;
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
@@ -155,8 +156,7 @@ fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
             .map(|x| x.scale_exact(exp2i(-power)))
     };
     let mut normal = run(Cross(edge(b), edge(c)));
-    let rough =
-        DVec3::new(normal[0].to_double().high, normal[1].to_double().high, normal[2].to_double().high);
+    let rough = DVec3::new(normal[0].rounded().high, normal[1].rounded().high, normal[2].rounded().high);
     let normal_power = flat::power_of(rough);
     normal.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
     (normal, 2 * power + normal_power)
@@ -202,7 +202,7 @@ impl Task for Weights<'_> {
     fn run<P: Product>(self) -> DVec2 {
         // In the two coordinates in which the triangle is largest: the plane point l = beta (b - a) + gamma (c - a)
         // gives beta = (l x e2)_k / n_k and gamma = (e1 x l)_k / n_k.
-        let Triangle { a, b, c, normal, .. } = self.triangle;
+        let Triangle { a, b, c, scaled_normal: normal, .. } = self.triangle;
         let k = flat::dominant(*normal);
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         let power = flat::power_of(DVec3::splat(self.triangle.reach));
@@ -230,7 +230,7 @@ impl Primitive for Triangle {
         let (e1, e2) = (self.b - self.a, self.c - self.a);
         let (s, d) = (self.a - ray.origin, ray.direction);
         let r = d.cross(s);
-        let denominator = self.normal.dot(d);
+        let denominator = self.scaled_normal.dot(d);
         let of_b = -e2.dot(r);
         let of_c = e1.dot(r);
         let of_a = denominator * self.area_scale - of_b - of_c;
@@ -244,28 +244,18 @@ impl Primitive for Triangle {
         let least = lesser(of_a, lesser(of_b, of_c));
         let most = greater(of_a, greater(of_b, of_c));
         // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
-        let certain = base > LEAST_BASE && base < MOST_BASE && doubt > LEAST_CERTAIN && doubt < MOST_BASE;
-        if certain && least < -doubt && most > doubt {
+        let certain =
+            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
+        if certain & (least < -doubt) & (most > doubt) {
             return None;
         }
-        let n = self.normal * s;
-        let t = (n.x + n.y + n.z) / denominator;
-        if certain && (least > doubt || most < -doubt) {
-            // As for the plane; the rounded normal adds u to both sums.
-            let (n, q) = (n.abs(), (self.normal * d).abs());
-            let sizes = q.x + q.y + q.z;
-            let slack = (6.0 * U) * ((n.x + n.y + n.z) + t.abs() * sizes);
-            let from_min = (t - within.min).abs() * denominator.abs();
-            let from_max = (t - within.max).abs() * denominator.abs();
-            if from_min > slack
-                && from_max > slack
-                && slack > LEAST_CERTAIN
-                && flat::crosses(denominator, sizes)
-            {
-                return within.admit(t, 0, 0);
+        if certain & ((least > doubt) | (most < -doubt)) {
+            let rough = Rough::new(self.a, self.scaled_normal, ray);
+            if rough.decides(within) {
+                return within.admit(rough.t, 0, 0);
             }
         }
-        self.hit_exactly(ray, within, t)
+        self.hit_exactly(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -277,19 +267,18 @@ impl Primitive for Triangle {
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
         let Some(at) = self.meet(ray) else {
             // Only for a ray that this triangle gave no hit for.
-            return Surface::new(hit.t(), self.a, DVec3::ZERO, self.unit_normal, self.reach);
+            return Surface::new(hit.t(), self.a, DVec3::ZERO, self.normal, self.reach);
         };
         // The hit is inside; what double-double leaves beside the corners is noise.
         let [a, b, c] = self.corners();
         let point = at.point(a).clamp(a.min(b).min(c), a.max(b).max(c));
         let uv = run(Weights { at: &at, triangle: self });
-        let surface =
-            Surface::new(at.t, point, at.local(), self.unit_normal, at.error_radius(point)).with_uv(uv);
+        let surface = Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point)).with_uv(uv);
         match self.smooth.as_deref() {
             Some([a, b, c]) => {
                 let normal = *a * (1.0 - uv.x - uv.y) + *b * uv.x + *c * uv.y;
                 // Opposite corner normals may cancel: the geometric normal is all there is then.
-                surface.with_shading_normal(normal.try_normalize().unwrap_or(self.unit_normal))
+                surface.with_shading_normal(normal.try_normalize().unwrap_or(self.normal))
             }
             None => surface,
         }
@@ -321,4 +310,49 @@ fn lesser(a: f64, b: f64) -> f64 {
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_and_corners_belong_to_it() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0]).unwrap();
+        let down = |x: f64, y: f64| triangle.hit(&Ray::new([x, y, 2.0], [0.0, 0.0, -1.0]), Interval::FORWARD);
+        for (x, y) in [(0.0, 0.0), (3.0, 0.0), (0.0, 3.0), (1.0, 2.0), (2.0, 0.0)] {
+            assert!(down(x, y).is_some(), "{x} {y}");
+        }
+        assert_eq!(down(1.0, 2.0_f64.next_up()), None);
+        assert_eq!(down(2.0, -f64::MIN_POSITIVE), None);
+    }
+
+    #[test]
+    fn weights_and_normals() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0]).unwrap();
+        let smooth = triangle.with_normals([0.0, 0.0, 3.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+        let ray = Ray::new([1.0, 1.0, 1.0], [0.0, 0.0, -1.0]);
+        let surface = smooth.surface(&ray, smooth.hit(&ray, Interval::FORWARD).unwrap());
+        assert_eq!(surface.uv, DVec2::new(0.5, 0.25));
+        assert_eq!(surface.normal, DVec3::Z);
+        let half = 0.5_f64.sqrt();
+        assert!((surface.shading_normal - DVec3::new(0.0, half, half)).length() < 1e-15);
+    }
+
+    #[test]
+    fn the_normal_of_a_sliver_is_exact() {
+        let (a, b) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.1, 1.2, 1.3));
+        let triangle = Triangle::new(a, b, DVec3::new(0.6, 0.7, 0.8_f64.next_up())).unwrap();
+        // The third corner lies a few roundings off the line: the normal is across it all the same.
+        assert!(triangle.normal().dot((b - a).normalize()).abs() < 2e-16);
+    }
+
+    #[test]
+    fn constructor_errors() {
+        let line = Triangle::new([0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]);
+        assert!(matches!(line, Err(Error::Degenerate { .. })));
+        let fine = Triangle::new([0.0, 0.0, 0.0], [1e-150, 0.0, 0.0], [0.0, 1e-150, 0.0]).unwrap();
+        assert_eq!(fine.normal(), DVec3::Z);
+        assert!(matches!(fine.with_normals(DVec3::Z, DVec3::ZERO, DVec3::Z), Err(Error::ZeroLength { .. })));
+    }
 }

@@ -2,7 +2,6 @@
 
 use rivals_acceleration::*;
 use rt_core::{Interval, Ray};
-use std::time::Instant;
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
@@ -10,11 +9,11 @@ fn main() {
     let n: usize = arguments.next().and_then(|s| s.parse().ok()).unwrap_or(10_000);
     let passes: usize = arguments.next().and_then(|s| s.parse().ok()).unwrap_or(3);
     let builder = if kind == "sphere" { sphere_geometry(n) } else { torus_geometry(n) };
-    let start = Instant::now();
+    let start = cpu_seconds();
     let geometry = builder.build();
     println!(
         "ours {kind} N={n} build {:.1} ms  {:.1} bytes/primitive",
-        start.elapsed().as_secs_f64() * 1e3,
+        (cpu_seconds() - start) * 1e3,
         geometry.memory() as f64 / n as f64
     );
     let only = arguments.next().unwrap_or_default();
@@ -49,9 +48,9 @@ fn measure(name: &str, passes: usize, rays: &[Ray], mut work: impl FnMut() -> (u
     let mut best = f64::INFINITY;
     let mut answer = (0, 0.0);
     for _ in 0..passes {
-        let start = Instant::now();
+        let start = cpu_seconds();
         answer = work();
-        best = best.min(start.elapsed().as_secs_f64());
+        best = best.min(cpu_seconds() - start);
     }
     println!(
         "  {name:24} {:7.2} Mrays/s  hits={} sum={:.6}",

@@ -1,8 +1,10 @@
 //! Degree four: three methods with one signature.
 
 mod certified;
+mod discs;
 mod ferrari;
 mod graphics_gems;
+mod split;
 
 use super::{Roots, cubic};
 use crate::Interval;

@@ -56,6 +56,11 @@ const ROUNDING: f64 = exp2i(-99);
 pub(super) fn uncertainty(torus: &Torus, line: &Line, x: f64) -> f64 {
     let square = 4.0 * torus.major_scaled * torus.major_scaled;
     let k = line.k.high + x * x;
+    if let Some(core) = &line.core
+        && k < -0.25 * square
+    {
+        return ROUNDING * core.magnitude(x, 0.5 * square);
+    }
     let z = line.z.high + x * line.slope.high;
     let gap = (torus.minor_scaled - z) * (torus.minor_scaled + z);
     let reach = torus.reach;
@@ -65,17 +70,18 @@ pub(super) fn uncertainty(torus: &Torus, line: &Line, x: f64) -> f64 {
 /// The extrema of `f` in ascending order; one or three of them.
 #[inline(always)]
 fn extrema<P: Product>(line: &Line) -> ([Double; 3], usize) {
-    let mut c = Double::from(outermost(line.p.high, line.q.high));
+    let (p, q) = line.extremal::<P>();
+    let mut c = Double::from(outermost(p.high, q.high));
     // Two steps turn 50 correct bits into all that double-double has.
     for _ in 0..2 {
         let square = c.square::<P>();
-        let value = (square + line.p).mul::<P>(c) + line.q;
-        let step = value.high / (3.0 * square.high + line.p.high);
+        let value = (square + p).mul::<P>(c) + q;
+        let step = value.high / (3.0 * square.high + p.high);
         if step.is_finite() {
             c = c - step;
         }
     }
-    let discriminant = -(c.square::<P>().scale::<P>(3.0) + line.p.scale_exact(4.0));
+    let discriminant = -(c.square::<P>().scale::<P>(3.0) + p.scale_exact(4.0));
     if discriminant.high < 0.0 {
         return ([c, Double::ZERO, Double::ZERO], 1);
     }
@@ -158,8 +164,14 @@ fn refine<P: Product>(line: &Line, low: &Node, high: &Node) -> Double {
     x
 }
 
-/// Whether Newton's step leaves no more than 2^-105 of an error: `step^2 f'' / (2 f')`, from the series of `f`.
+/// Whether Newton's step leaves no more than 2^-105 of an error.
 #[inline(always)]
-pub(super) fn finished(line: &Line, x: Double, slope: f64, step: f64) -> bool {
-    (step * step * line.bend(x.high) / slope).abs() <= 0.5 * f64::EPSILON * f64::EPSILON
+fn finished(line: &Line, x: Double, slope: f64, step: f64) -> bool {
+    left(line, x, slope, step) <= 0.5 * f64::EPSILON * f64::EPSILON
+}
+
+/// The error that Newton's step leaves: `step^2 f'' / (2 f')`, from the series of `f`.
+#[inline(always)]
+pub(super) fn left(line: &Line, x: Double, slope: f64, step: f64) -> f64 {
+    (step * step * line.bend(x.high) / slope).abs()
 }

@@ -207,7 +207,8 @@ impl Node {
 #[inline(always)]
 fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
     let mut c = Double::from(x);
-    let bend = 2.0 * (3.0 * x * x + line.p.high);
+    let (p, q) = line.extremal::<P>();
+    let bend = 2.0 * (3.0 * x * x + p.high);
     // The slope's roundings, 2^-47 of S^3, displace the extremum in f64 by twice that over the bend. Down to this bend
     // that is at most 2^-36 S; Newton's step squares it, times 12 S over the bend, to 2^-58 S, and the value errs by
     // the bend times the square of that: 2^-120.
@@ -215,7 +216,7 @@ fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
         return None;
     }
     let square = c.square::<P>();
-    let slope = (square + line.p).mul::<P>(c) + line.q;
+    let slope = (square + p).mul::<P>(c) + q;
     c = c - slope.high / (0.5 * bend);
     let value = line.value::<P>(c).0.high;
     if value.abs() <= exact::uncertainty(torus, line, x) || value.is_nan() {

@@ -128,7 +128,7 @@ impl<F: FnMut(Hit) -> bool> Task for Leave<'_, F> {
         let square = s.square::<P>();
         let cubic = Cubic {
             second: s.scale_exact(4.0),
-            first: square.scale::<P>(6.0) + line.p.scale_exact(2.0),
+            first: square.scale::<P>(6.0) + line.extremal::<P>().0.scale_exact(2.0),
             constant: start.slope.div::<P>(line.length),
         };
         // Inside means f < 0.

@@ -9,7 +9,13 @@
 //!
 //! a quartic without a cubic term. Evaluated as the first line stands it loses nothing on a thin tube: there `k` is
 //! of the order of `R r` and `z` of the order of `r`, so that a rounding of either moves the zero by a rounding of
-//! `R` and not by `R / r` of them.
+//! `R` and not by `R / r` of them. Near the axis, where a horn or a spindle meets itself, the same is written
+//!
+//! ```text
+//! f(x) = K^2 - 4 R^2 rho^2,    K = |m|^2 + R^2 - r^2 + x^2,    rho^2 = |m'|^2 + 2 x m' . u' + x^2 |u'|^2
+//! ```
+//!
+//! with `m'` and `u'` the parts across the axis: there it is the difference of two small numbers.
 
 use super::Torus;
 use crate::double::Double;
@@ -38,10 +44,59 @@ pub(super) struct Line {
     /// `2 R^2`.
     twice: Double,
     minor: f64,
-    /// `P`, the coefficient of the cubic `x^3 + P x + Q` whose zeros are the extrema of `f`.
-    pub p: Double,
-    /// `Q`, its constant.
-    pub q: Double,
+    /// What the second form needs, where the line comes so near to the centre that it is the better one.
+    pub core: Option<Core>,
+}
+
+/// The line across the axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Core {
+    /// `|m|^2 + R^2 - r^2`.
+    pub k: Double,
+    /// `|m'|^2`.
+    square: Double,
+    /// `m' . u'`.
+    product: Double,
+    /// `|u'|^2`.
+    slope: Double,
+}
+
+impl Core {
+    #[inline(always)]
+    fn new<P: Product>(
+        torus: &Torus,
+        point: DoubleVector,
+        direction: DVec3,
+        slope: Double,
+        length: Double,
+    ) -> Core {
+        let axis = torus.frame[2];
+        let unit = DoubleVector::from(direction).mul::<P>(Double::ONE.div::<P>(length));
+        let along = unit - axis.mul::<P>(slope);
+        let across = point - axis.mul::<P>(point.dot::<P>(axis));
+        Core {
+            k: point.length_squared::<P>() + torus.difference,
+            square: across.length_squared::<P>(),
+            product: across.dot::<P>(along),
+            slope: along.length_squared::<P>(),
+        }
+    }
+
+    /// `rho^2` at `x`.
+    #[inline(always)]
+    fn rho_squared<P: Product>(&self, x: Double) -> Double {
+        (x.mul::<P>(self.slope) + self.product.scale_exact(2.0)).mul::<P>(x) + self.square
+    }
+
+    /// How far double-double arithmetic may be off in `f` at `x`, in units of its rounding.
+    #[inline(always)]
+    pub fn magnitude(&self, x: f64, twice: f64) -> f64 {
+        let k = self.k.high + x * x;
+        let rho = (x * self.slope.high + 2.0 * self.product.high) * x + self.square.high;
+        let parts = x * x * self.slope.high + 2.0 * (x * self.product.high).abs() + self.square.high;
+        let scale = x * x + self.square.high + self.k.high.abs();
+        2.0 * k.abs() * scale + k * k + 2.0 * twice * (rho.abs() + parts)
+    }
 }
 
 impl Line {
@@ -68,6 +123,11 @@ impl Line {
         let z = point.dot::<P>(axis);
         let slope = axis.dot_f64::<P>(d).div::<P>(length);
         let twice = torus.twice;
+        let mut core = None;
+        // Somewhere on the line |K| < |k|.
+        if k.high < -0.5 * twice.high {
+            core = Some(Core::new::<P>(torus, point, d, slope, length));
+        }
         Line {
             direction,
             length,
@@ -78,8 +138,7 @@ impl Line {
             slope,
             twice,
             minor: torus.minor_scaled,
-            p: k + twice.mul::<P>(slope.square::<P>()),
-            q: twice.mul::<P>(z.mul::<P>(slope)),
+            core,
         }
     }
 
@@ -92,7 +151,16 @@ impl Line {
     /// `f(x)` and a quarter of its derivative.
     #[inline(always)]
     pub fn value<P: Product>(&self, x: Double) -> (Double, Double) {
-        let k = self.k + x.square::<P>();
+        let square = x.square::<P>();
+        let k = self.k + square;
+        if let Some(core) = &self.core
+            && k.high < -0.5 * self.twice.high
+        {
+            let k = core.k + square;
+            let value = k.square::<P>() - self.twice.mul::<P>(core.rho_squared::<P>(x)).scale_exact(2.0);
+            let across = x.mul::<P>(core.slope) + core.product;
+            return (value, k.mul::<P>(x) - self.twice.mul::<P>(across));
+        }
         let z = self.z + x.mul::<P>(self.slope);
         let gap = (-z + self.minor).mul::<P>(z + self.minor);
         let value = k.square::<P>() - self.twice.mul::<P>(gap).scale_exact(2.0);
@@ -100,10 +168,30 @@ impl Line {
         (value, slope)
     }
 
+    /// `P` and `Q` of the cubic `x^3 + P x + Q` whose zeros are the extrema of `f`.
+    #[inline(always)]
+    pub fn extremal<P: Product>(&self) -> (Double, Double) {
+        let twice = self.twice;
+        match &self.core {
+            Some(core) => (core.k - twice.mul::<P>(core.slope), -twice.mul::<P>(core.product)),
+            None => (
+                self.k + twice.mul::<P>(self.slope.square::<P>()),
+                twice.mul::<P>(self.z.mul::<P>(self.slope)),
+            ),
+        }
+    }
+
+    /// A quarter of the derivative, rounded.
+    #[inline(always)]
+    pub fn slope_at(&self, x: f64) -> f64 {
+        let z = self.z.high + x * self.slope.high;
+        (self.k.high + x * x) * x + self.twice.high * z * self.slope.high
+    }
+
     /// An eighth of the second derivative, `(3 x^2 + P) / 2`, rounded.
     #[inline(always)]
     pub fn bend(&self, x: f64) -> f64 {
-        0.5 * (3.0 * x * x + self.p.high)
+        0.5 * (3.0 * x * x + (self.k.high + self.twice.high * self.slope.high * self.slope.high))
     }
 
     /// The parameter at distance `x` from the closest approach.
@@ -118,10 +206,11 @@ impl Line {
         (parameter - self.parameter).mul::<P>(self.length)
     }
 
-    /// The point at distance `x` from the closest approach, relative to the centre.
+    /// The parameter at distance `x` from the closest approach, and the point there, relative to the centre.
     #[inline(always)]
-    pub fn at<P: Product>(&self, x: Double) -> DoubleVector {
-        self.point + DoubleVector::from(self.direction).mul::<P>(x.div::<P>(self.length))
+    pub fn at<P: Product>(&self, x: Double) -> (Double, DoubleVector) {
+        let further = x.div::<P>(self.length);
+        (self.parameter + further, self.point + DoubleVector::from(self.direction).mul::<P>(further))
     }
 }
 

@@ -51,6 +51,8 @@ pub struct Torus {
     reach: f64,
     /// `R^2 + r^2`.
     squares: Double,
+    /// `R^2 - r^2`.
+    difference: Double,
     /// `2 R^2`.
     twice: Double,
 }
@@ -84,7 +86,7 @@ impl Torus {
         let minor = checked_length("minor", minor)?;
         let scale = exponent(if major > minor { major } else { minor });
         let (major_scaled, minor_scaled) = (major * exp2i(-scale), minor * exp2i(-scale));
-        let (squares, twice) = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
+        let (squares, difference, twice) = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
         Ok(Torus {
             center,
             major,
@@ -96,6 +98,7 @@ impl Torus {
             minor_scaled,
             reach: major_scaled + minor_scaled,
             squares,
+            difference,
             twice,
         })
     }
@@ -141,19 +144,23 @@ impl Torus {
     }
 }
 
-/// `R^2 + r^2` and `2 R^2`.
+/// `R^2 + r^2`, `R^2 - r^2` and `2 R^2`.
 struct Squares {
     major: f64,
     minor: f64,
 }
 
 impl Task for Squares {
-    type Output = (Double, Double);
+    type Output = (Double, Double, Double);
 
     #[inline(always)]
-    fn run<P: Product>(self) -> (Double, Double) {
+    fn run<P: Product>(self) -> (Double, Double, Double) {
         let square = Double::product::<P>(self.major, self.major);
-        (square + Double::product::<P>(self.minor, self.minor), square.scale_exact(2.0))
+        let sum = square + Double::product::<P>(self.minor, self.minor);
+        // Both factors are exact: nothing is lost however alike the radii are.
+        let difference =
+            Double::difference(self.major, self.minor).mul::<P>(Double::sum(self.major, self.minor));
+        (sum, difference, square.scale_exact(2.0))
     }
 }
 
@@ -202,7 +209,7 @@ impl Torus {
     ///
     /// `solver` gets the coefficients in ascending powers of `x^4 + 2 P x^2 + 4 Q x + c`, `x` being the distance from
     /// the ray's closest approach to the centre in units of a power of two near the torus' size, and the interval
-    /// in which to look; every function of [`poly::quartic`](crate::poly::quartic) fits. The coefficients are
+    /// in which to look; every function of [`poly::quartic`](mod@crate::poly::quartic) fits. The coefficients are
     /// rounded and what is returned is what the solver finds: nothing is certified.
     ///
     /// ```

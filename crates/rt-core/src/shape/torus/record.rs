@@ -7,7 +7,7 @@ use crate::double::Double;
 use crate::frame::turns;
 use crate::kernel::{Product, Task};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{ScaledRay, times_power};
+use crate::scaled::{ScaledRay, largest, times_power};
 use crate::{Hit, Surface};
 use glam::{DVec2, DVec3};
 
@@ -62,7 +62,9 @@ impl Task for Near<'_> {
         let mut slope = slope.high;
         // Each step more than doubles the correct bits, of which there are 30 or more at first.
         for _ in 0..3 {
-            if exact::finished(&line, x, slope, step.high) {
+            // What is left must vanish beside a rounding of t, of the size and of the tube.
+            let least = (t.high * line.length.high).abs().min(self.torus.minor_scaled);
+            if exact::left(&line, x, slope, step.high) <= exp2i(-70) * least {
                 break;
             }
             let (value, steepness) = line.value::<P>(x);
@@ -83,27 +85,37 @@ impl Task for Thorough<'_> {
         let line = Line::of::<P>(torus, ray);
         let crossings = exact::crossings::<P>(torus, &line);
         let t = Double::from(times_power(hit.t(), -ray.power));
-        let x = match chosen::<P>(&crossings, &line, t.high, hit.root()) {
-            Some(x) => x,
-            // A ray that left this torus along a tangent may pass it by less than the radius by which its origin
-            // was moved: the point at the parameter is the best there is.
-            None => line.distance::<P>(t),
-        };
-        torus.record::<P>(ray, &line, x)
+        let x = line.distance::<P>(t);
+        // A ray that left this torus was followed from its exact start; its origin differs from that by a few units
+        // in the last place of the world's coordinates. That changes f by at most its gradient, less than
+        // 32 (R + r)^3, times as much, and a value of so little has a zero of f, which is monic and of degree four,
+        // within the fourth root.
+        let moved = largest(torus.center) * exp2i(-torus.scale) + largest(ray.relative.high()) + torus.reach;
+        let change = 32.0 * torus.reach * torus.reach * torus.reach * moved * exp2i(-50);
+        match chosen(&crossings, x.high, sqrt(sqrt(change)), hit.root()) {
+            Some(x) => torus.record::<P>(ray, &line, x),
+            // That zero is not real: the moved ray passes a place that the exact one grazes.
+            None => {
+                let mut surface = torus.record::<P>(ray, &line, x);
+                surface.normal = surface.normal.normalize();
+                surface.shading_normal = surface.normal;
+                surface
+            }
+        }
     }
 }
 
-/// The crossing that the hit names: the one of that index, unless another in the same sense (both inward or both
-/// outward) is nearer to the hit's parameter. Only rays that leave this torus make a difference: they were counted
-/// along the line from the departure's point, not along the line of the moved ray.
+/// The crossing that the hit names: of those in the same sense (both inward or both outward) the one nearest to its
+/// place, unless that is too far, and of equally near ones that of its index. Only rays that leave this torus make a
+/// difference: they were counted along the line from the departure's point, not along the line of the moved ray.
 #[inline(always)]
-fn chosen<P: Product>(crossings: &Crossings, line: &Line, t: f64, root: u32) -> Option<Double> {
+fn chosen(crossings: &Crossings, place: f64, too_far: f64, root: u32) -> Option<Double> {
     let mut best: Option<(f64, Double)> = None;
     for (index, x) in crossings.as_slice().iter().enumerate() {
-        if index as u32 % 2 != root % 2 {
+        let miss = (x.high - place).abs();
+        if index as u32 % 2 != root % 2 || miss > too_far {
             continue;
         }
-        let miss = (line.parameter_at::<P>(*x).high - t).abs();
         if best.is_none_or(|(least, _)| miss < least || (miss == least && index as u32 == root)) {
             best = Some((miss, *x));
         }
@@ -115,28 +127,31 @@ impl Torus {
     /// The record of the point at distance `x` from the closest approach.
     #[inline(always)]
     fn record<P: Product>(&self, ray: &ScaledRay, line: &Line, x: Double) -> Surface {
-        let local = line.at::<P>(x);
-        let [first, second, axis] = self.frame;
-        let (x_own, y_own, z) = (local.dot::<P>(first), local.dot::<P>(second), local.dot::<P>(axis));
-        let rho = (x_own.square::<P>() + y_own.square::<P>()).sqrt::<P>();
-        let minor = Double::from(self.minor_scaled);
+        let (parameter, local) = line.at::<P>(x);
+        let axis = self.frame[2];
+        let z = line.z + x.mul::<P>(line.slope);
+        let across = local - axis.mul::<P>(z);
+        let rho = across.length_squared::<P>().sqrt::<P>();
         // How far the point is from the surface as seen from the near and from the far side of the generating
         // circle, in squares: on the inner sheet of a spindle the second vanishes.
-        let height = z.square::<P>() - minor.square::<P>();
-        let near = (rho - self.major_scaled).square::<P>() + height;
-        let far = (rho + self.major_scaled).square::<P>() + height;
-        let inner = far.high.abs() < near.high.abs();
-        // From the circle to the point: `out` along the radius, `z` along the axis.
+        let inner = self.minor > self.major && {
+            let height = z.square::<P>() - Double::product::<P>(self.minor_scaled, self.minor_scaled);
+            let near = (rho - self.major_scaled).square::<P>() + height;
+            let far = (rho + self.major_scaled).square::<P>() + height;
+            far.high.abs() < near.high.abs()
+        };
+        // From the circle to the point: `out` along the radius, `z` along the axis. No digit is lost in what follows.
         let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
         let normal = if rho.high > 0.0 {
-            let radial = out.div::<P>(rho.mul::<P>(minor));
-            let axial = z.div::<P>(minor);
-            ((local - axis.mul::<P>(z)).mul::<P>(radial) + axis.mul::<P>(axial)).high()
+            across.high() * (out.high / (rho.high * self.minor_scaled))
+                + self.axis * (z.high / self.minor_scaled)
         } else {
             // On the axis, where the sheets meet in a point.
-            axis.high() * if z.high < 0.0 { -1.0 } else { 1.0 }
+            self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
-        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own.high, y_own.high, z.high));
+        let flat = local.high();
+        let (x_own, y_own) = (flat.dot(self.frame[0].high()), flat.dot(self.frame[1].high()));
+        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own, y_own, z.high));
         let world = local.scale_exact(unit);
         let point = world.plus_f64(self.center);
         // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
@@ -146,9 +161,9 @@ impl Torus {
         } else {
             DVec2::new(turns(own.x, own.y), turns(out.high, own.z))
         };
-        let t = ray.unscale(line.parameter_at::<P>(x)).to_f64();
+        let t = ray.unscale(parameter).to_f64();
         let uncertainty = exact::uncertainty(self, line, x.high);
-        let error = self.error_radius(point, uncertainty, line.value::<P>(x).1.high);
+        let error = self.error_radius(point, uncertainty, line.slope_at(x.high));
         Surface::new(t, point, world.high(), normal, error).with_uv(uv).with_object_point(own * unit)
     }
 
@@ -159,7 +174,7 @@ impl Torus {
     #[inline(always)]
     fn error_radius(&self, point: DVec3, uncertainty: f64, slope: f64) -> f64 {
         // sqrt(3) < 1.75, and a few units of slack.
-        let rounding = crate::scaled::largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
+        let rounding = largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
         let along = uncertainty / (4.0 * slope.abs());
         let most = sqrt(uncertainty);
         rounding + exp2i(self.scale) * if along < most { along } else { most }

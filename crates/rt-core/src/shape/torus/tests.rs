@@ -18,10 +18,7 @@ fn direction() -> impl Strategy<Value = DVec3> {
 
 /// Rings down to a millionth, nearly horns, spindles.
 fn radii() -> impl Strategy<Value = (f64, f64)> {
-    (
-        0.5..2.0_f64,
-        prop_oneof![0.05..0.95_f64, (-6.0..-1.0_f64).prop_map(|e| libm::exp10(e)), 0.95..1.05, 1.0..4.0],
-    )
+    (0.5..2.0_f64, prop_oneof![0.05..0.95_f64, (-6.0..-1.0_f64).prop_map(libm::exp10), 0.95..1.05, 1.0..4.0])
         .prop_map(|(major, ratio)| (major, major * ratio))
 }
 
@@ -196,7 +193,7 @@ proptest! {
         let bounds = torus.bounds().unwrap();
         let size = torus.major + torus.minor;
         let hits = all(&torus, &ray);
-        prop_assert!(hits.len() % 2 == 0);
+        prop_assert!(hits.len().is_multiple_of(2));
         for (i, &hit) in hits.iter().enumerate() {
             let s = torus.surface(&ray, hit);
             prop_assert_eq!(hit.root() as usize, i);

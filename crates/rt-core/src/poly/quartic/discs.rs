@@ -1,0 +1,230 @@
+//! Simple roots from approximate factors, certified by inclusion discs.
+//!
+//! With approximations `z_i` to the four roots and Weierstrass's corrections `W_i = p(z_i) / (c4 prod (z_i - z_j))`, the
+//! discs about `z_i` of radius `4 |W_i|` contain all roots, and a union of `k` discs apart from the others contains
+//! `k` (Smith 1970, doi:10.1145/321574.321579). So a disc about a real place, apart from the others,
+//! holds one root, which is real because the conjugate would be in it too; and a disc that misses the real axis holds none.
+//!
+//! `z_i - W_i` is the next approximation. If `e_j` are the errors, `W_i = e_i prod (1 + e_j / (z_i - z_j))`: the new
+//! error is `|e_i|` times the sum of `4 |W_j| / |z_i - z_j|`, nearly.
+
+use super::super::Roots;
+use super::split::Factor;
+use crate::kernel::Product;
+use crate::math::{exp2i, sqrt};
+
+/// What is left of the error before the last rounding, relative: a thirty-second of a unit roundoff.
+const LEFT: f64 = exp2i(-58);
+
+/// The real roots of `c` from its approximate factors, correctly rounded or nearly so, and certainly all of them; or
+/// `None` in doubt.
+#[inline(always)]
+pub(super) fn roots<P: Product>(c: &[f64; 5], factors: &[Factor; 2]) -> Option<Roots<4>> {
+    let d = factors.map(|f| 0.25 * f.linear * f.linear - f.constant);
+    match (d[0] > 0.0, d[1] > 0.0) {
+        (true, true) => {
+            let (x, y) = (real(&factors[0], d[0]), real(&factors[1], d[1]));
+            four::<P>(c, [x[0], x[1], y[0], y[1]])
+        }
+        (true, false) => two::<P>(c, real(&factors[0], d[0]), &Pair::new(&factors[1], d[1])),
+        (false, true) => two::<P>(c, real(&factors[1], d[1]), &Pair::new(&factors[0], d[0])),
+        (false, false) => none(c, &Pair::new(&factors[0], d[0]), &Pair::new(&factors[1], d[1])),
+    }
+}
+
+/// The roots of a factor with discriminant `d > 0`.
+#[inline(always)]
+fn real(f: &Factor, d: f64) -> [f64; 2] {
+    let h = -0.5 * f.linear;
+    let s = sqrt(d);
+    let q = if h >= 0.0 { h + s } else { h - s };
+    [q, f.constant / q]
+}
+
+/// `p(x)` by compensated Horner (Graillat, Langlois and Louvet 2005): within u |p| + 2^-100 of the sum of the magnitudes of
+/// the terms, which comes second.
+#[inline(always)]
+fn compensated<P: Product, const N: usize>(c: &[f64; 5], x: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let mut s = [c[4]; N];
+    let mut e = [0.0; N];
+    let mut size = [c[4].abs(); N];
+    for k in (0..4).rev() {
+        for i in 0..N {
+            let (p, pe) = P::two_product(s[i], x[i]);
+            let t = p + c[k];
+            let b = t - p;
+            let te = (p - (t - b)) + (c[k] - b);
+            s[i] = t;
+            e[i] = e[i] * x[i] + (pe + te);
+            size[i] = size[i] * x[i].abs() + c[k].abs();
+        }
+    }
+    for i in 0..N {
+        s[i] += e[i];
+    }
+    (s, size)
+}
+
+/// Four real roots.
+#[inline(always)]
+fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
+    // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-58 after four.
+    for _ in 0..5 {
+        let (p, size) = compensated::<P, 4>(c, &x);
+        let [d01, d02, d03, d12, d13, d23] =
+            [x[0] - x[1], x[0] - x[2], x[0] - x[3], x[1] - x[2], x[1] - x[3], x[2] - x[3]];
+        let g = [d01 * d02 * d03, -d01 * d12 * d13, d02 * d12 * d23, -d03 * d13 * d23];
+        let mut w = [0.0; 4];
+        let mut noise = [0.0; 4];
+        let mut radius = [0.0; 4];
+        for i in 0..4 {
+            let inverse = 1.0 / (g[i] * c[4]);
+            w[i] = p[i] * inverse;
+            noise[i] = (size[i] * inverse).abs() * exp2i(-100);
+            // A little more than 4, for the roundings.
+            radius[i] = 4.01 * (w[i].abs() + noise[i]);
+        }
+        let i = [
+            1.0 / d01.abs(),
+            1.0 / d02.abs(),
+            1.0 / d03.abs(),
+            1.0 / d12.abs(),
+            1.0 / d13.abs(),
+            1.0 / d23.abs(),
+        ];
+        let share = [
+            radius[1] * i[0] + radius[2] * i[1] + radius[3] * i[2],
+            radius[0] * i[0] + radius[2] * i[3] + radius[3] * i[4],
+            radius[0] * i[1] + radius[1] * i[3] + radius[3] * i[5],
+            radius[0] * i[2] + radius[1] * i[4] + radius[2] * i[5],
+        ];
+        let mut apart = true;
+        let mut done = true;
+        for i in 0..4 {
+            // Each radius at most an eighth of each distance: the discs are apart.
+            apart &= share[i] < 0.125;
+            let next = x[i] - w[i];
+            done &= w[i].abs() * (1.2 * share[i] + exp2i(-48)) + noise[i] <= LEFT * next.abs();
+            x[i] = next;
+        }
+        if apart && done {
+            let mut roots = Roots::default();
+            x.iter().for_each(|&x| roots.insert(x, 1));
+            return Some(roots);
+        }
+        if !(share[0] + share[1] + share[2] + share[3] < 1e3) {
+            return None;
+        }
+    }
+    None
+}
+
+/// Two real roots and a pair.
+#[inline(always)]
+fn two<P: Product>(c: &[f64; 5], mut x: [f64; 2], z: &Pair) -> Option<Roots<4>> {
+    let r = z.residual(c);
+    for _ in 0..4 {
+        let (p, size) = compensated::<P, 2>(c, &x);
+        let gap = x[0] - x[1];
+        // |z - x_i|^2
+        let far = [z.distance2(x[0]), z.distance2(x[1])];
+        let g = [c[4] * gap * far[0], -c[4] * gap * far[1]];
+        let radius_z = 4.01 * r / (2.0 * z.im * sqrt(far[0] * far[1]) * c[4].abs());
+        let mut w = [0.0; 2];
+        let mut noise = [0.0; 2];
+        let mut radius = [0.0; 2];
+        for i in 0..2 {
+            let inverse = 1.0 / g[i];
+            w[i] = p[i] * inverse;
+            noise[i] = (size[i] * inverse).abs() * exp2i(-100);
+            radius[i] = 4.01 * (w[i].abs() + noise[i]);
+        }
+        // The disc of the pair misses the axis by 3/4 of its height; those on the axis are smaller than that.
+        let mut apart = radius_z + z.blur() < 0.25 * z.im;
+        let mut done = true;
+        let mut sum = 0.0;
+        for i in 0..2 {
+            let share = radius[1 - i] / gap.abs() + 2.0 * radius_z / sqrt(far[i]);
+            sum += share;
+            apart &= share < 0.125 && radius[i] < 0.25 * z.im;
+            let next = x[i] - w[i];
+            done &= w[i].abs() * (1.2 * share + exp2i(-48)) + noise[i] <= LEFT * next.abs();
+            x[i] = next;
+        }
+        if apart && done {
+            let mut roots = Roots::default();
+            x.iter().for_each(|&x| roots.insert(x, 1));
+            return Some(roots);
+        }
+        if !(sum < 1e3) || !(radius_z < 0.25 * z.im) {
+            return None;
+        }
+    }
+    None
+}
+
+/// No real root: two discs off the axis.
+#[inline(always)]
+fn none(c: &[f64; 5], z: &Pair, y: &Pair) -> Option<Roots<4>> {
+    let lead = 2.0 * c[4].abs();
+    // |f(z)| for the factor f of the other pair: (z - y) (z - conj y).
+    let value = |z: &Pair, y: &Pair| {
+        let re = z.re - y.re;
+        let (a, b) = (re * re + (z.im - y.im) * (z.im - y.im), re * re + (z.im + y.im) * (z.im + y.im));
+        sqrt(a * b)
+    };
+    let between = value(z, y);
+    let clear =
+        |z: &Pair| 4.01 * z.residual(c) <= 0.25 * z.im * (lead * z.im * between) && z.blur() < 0.25 * z.im;
+    if clear(z) && clear(y) { Some(Roots::default()) } else { None }
+}
+
+/// A pair of conjugate complex roots.
+struct Pair {
+    linear: f64,
+    constant: f64,
+    re: f64,
+    im: f64,
+    modulus: f64,
+}
+
+impl Pair {
+    /// The roots of a factor with discriminant `d <= 0`.
+    #[inline(always)]
+    fn new(f: &Factor, d: f64) -> Self {
+        let constant = f.constant.max(0.0);
+        Pair {
+            linear: f.linear,
+            constant: f.constant,
+            re: -0.5 * f.linear,
+            im: sqrt(-d),
+            modulus: sqrt(constant),
+        }
+    }
+
+    /// How far the roots of the factor may be from `re + i im`: the discriminant is rounded to 2^-52 of the constant
+    /// term, and a square root passes on half of that over itself.
+    #[inline(always)]
+    fn blur(&self) -> f64 {
+        exp2i(-50) * self.constant.abs() / self.im
+    }
+
+    #[inline(always)]
+    fn distance2(&self, x: f64) -> f64 {
+        (x - self.re) * (x - self.re) + self.im * self.im
+    }
+
+    /// A bound of `|p(z)|`, from the remainder of the division by the factor. Its roundings are below 2^-46 of the sum of the
+    /// magnitudes: 8 operations a step, and up to k + 1 copies of the k-th term.
+    #[inline(always)]
+    fn residual(&self, c: &[f64; 5]) -> f64 {
+        let (a, b) = (self.linear, self.constant);
+        let c3 = c[3] - a * c[4];
+        let c2 = c[2] - a * c3 - b * c[4];
+        let r1 = c[1] - a * c2 - b * c3;
+        let r0 = c[0] - b * c2;
+        let m = self.modulus;
+        let size = (((c[4].abs() * m + c[3].abs()) * m + c[2].abs()) * m + c[1].abs()) * m + c[0].abs();
+        r1.abs() * m + r0.abs() + exp2i(-46) * size
+    }
+}

@@ -1,0 +1,123 @@
+//! A quartic as a product of two real quadratics, approximately, in `f64`.
+//!
+//! Ferrari's method with two cares. Of the real roots of the resolvent cubic the one farthest from the others is taken: it
+//! belongs to the split in which two nearly equal roots stay in one factor, so both factors are well
+//! conditioned. And of the two quantities `s` and `d` with `s d = q` the one with less cancellation is computed, the
+//! other by division (as the choice of factors in Orellana and De Michele 2020, doi:10.1145/3386241). Nothing is promised
+//! about the result: it is judged and mended afterwards.
+
+use crate::math::{exp2i, sqrt};
+
+/// The monic quadratic `x^2 + linear x + constant`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factor {
+    pub linear: f64,
+    pub constant: f64,
+}
+
+/// Two factors of `x^4 + a x^3 + b x^2 + c x + d`; `None` where the arithmetic breaks down.
+#[inline(always)]
+pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
+    // x = z - a/4 gives z^4 + p z^2 + q z + r.
+    let t = 0.25 * a;
+    let t2 = t * t;
+    let p = b - 6.0 * t2;
+    let q = c - 2.0 * t * (b - 4.0 * t2);
+    let r = d - t * (c - t * (b - 3.0 * t2));
+    // (z^2 + s z + v1) (z^2 - s z + v2), w = s^2: w^3 + 2 p w^2 + (p^2 - 4 r) w - q^2 = 0; w = y - 2p/3.
+    let p2 = p * p;
+    let y = isolated_root(-(p2 / 3.0 + 4.0 * r), p * (8.0 / 3.0 * r - 2.0 / 27.0 * p2) - q * q);
+    let w = y - 2.0 / 3.0 * p;
+    // v1 + v2 = p + w, v2 - v1 = d with d^2 = (p + w)^2 - 4 r and s d = q.
+    let sum = p + w;
+    let e = sum * sum - 4.0 * r;
+    let (s, difference) = if w * (sum * sum + 4.0 * r.abs()) > e * (y.abs() + p.abs()) {
+        let s = sqrt(w);
+        (s, q / s)
+    } else if e > 0.0 {
+        let difference = sqrt(e);
+        (q / difference, difference)
+    } else {
+        return None;
+    };
+    let (mut v1, mut v2) = (0.5 * (sum - difference), 0.5 * (sum + difference));
+    if (sum < 0.0) == (difference < 0.0) {
+        v1 = r / v2;
+    } else if v1 != 0.0 {
+        v2 = r / v1;
+    }
+    let (mut f, mut g) = (
+        Factor { linear: 2.0 * t + s, constant: t * (t + s) + v1 },
+        Factor { linear: 2.0 * t - s, constant: t * (t - s) + v2 },
+    );
+    if f.constant.abs() < g.constant.abs() {
+        core::mem::swap(&mut f, &mut g);
+    }
+    // The factor of the smaller roots lost its digits in the shift: take it from the product instead.
+    if a != 0.0 {
+        g.constant = d / f.constant;
+        g.linear = (c - f.linear * g.constant) / f.constant;
+        f.linear = a - g.linear;
+    }
+    let sound =
+        f.linear.is_finite() && f.constant.is_finite() && g.linear.is_finite() && g.constant.is_finite();
+    if sound { Some([f, g]) } else { None }
+}
+
+/// The real root of `y^3 + m y + n` farthest from the others.
+#[inline(always)]
+pub(super) fn isolated_root(m: f64, n: f64) -> f64 {
+    // It has the sign of -n, and with y = +-scale t, scale = 2 sqrt(|m|/3): 4 t^3 -+ 3 t = x, x >= 0.
+    let third = (m * (1.0 / 3.0)).abs();
+    let half = sqrt(third);
+    let x = 0.5 * n.abs() / (half * third);
+    if !(x < 1e30) {
+        // The linear term hardly matters (or there is none).
+        let y = cube_root(n.abs());
+        if y == 0.0 {
+            return 0.0;
+        }
+        // One step of Newton's method for the term itself, two for the rough cube root.
+        let mut y = y;
+        for _ in 0..4 {
+            y -= ((y * y + m) * y - n.abs()) / (3.0 * y * y + m);
+        }
+        return if n > 0.0 { -y } else { y };
+    }
+    let (k, mut t) = if m < 0.0 {
+        let start = if x <= 1.0 {
+            // cos(acos(x) / 3) by the parabola through its ends and middle: within 1e-3.
+            0.866_025_403_784_438_6 + x * (0.166 - 0.032 * x)
+        } else {
+            let c = cube_root(0.25 * x);
+            c + 0.25 / c
+        };
+        (-3.0, start)
+    } else {
+        let c = cube_root(0.25 * x);
+        let rough = x / (3.0 + 4.0 * c * c);
+        (3.0, x / (3.0 + 4.0 * rough * rough))
+    };
+    // Halley's method, of third order: from 5 % to 1e-4 to 1e-12, and what is left is mended later.
+    for _ in 0..2 {
+        let t2 = t * t;
+        let f = (4.0 * t2 + k) * t - x;
+        let slope = 12.0 * t2 + k;
+        t -= f * slope / (slope * slope - 12.0 * t * f);
+    }
+    let y = 2.0 * half * t;
+    if n > 0.0 { -y } else { y }
+}
+
+/// The cube root of a number that is not negative, to about 1e-3: a third of the exponent and mantissa bits, and one step
+/// of Newton's method.
+#[inline(always)]
+fn cube_root(x: f64) -> f64 {
+    if x < exp2i(-1000) {
+        return 0.0;
+    }
+    // Dividing the bits by three divides the logarithm, read linearly between powers of two, by three; the constant is
+    // two thirds of the bias, less the mean error of that reading.
+    let y = f64::from_bits(x.to_bits() / 3 + 0x2a9f_7893_0000_0000);
+    y * (2.0 / 3.0) + x / (3.0 * y * y)
+}
