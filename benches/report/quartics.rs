@@ -142,7 +142,7 @@ pub fn run(effort: Effort, output: &mut Output) {
         let name = format!("{name}: {} wrong counts", tally.wrong);
         series.push(Series { name, points: points.remove(method_name).unwrap_or_default() });
     }
-    output.table(summary);
+    output.summary(summary);
     output.csv_only(by_family);
     output.plot("quartics", |path| {
         scatter(

@@ -262,6 +262,51 @@ fn speed(effort: Effort, output: &mut Output) -> Vec<Row> {
     rows
 }
 
+/// What README.md shows: a line for each shape.
+fn summary(timed: &[Row], accurate: &[Row]) -> Table {
+    let mut table = Table::new(
+        "shapes_summary",
+        "Shapes: ours beside the textbook",
+        &[
+            "shape",
+            "`hit`, ns",
+            "`hit` + `surface`, ns",
+            "textbook `f64`, ns",
+            "wrong hits: ours",
+            "`f64`",
+            "`f32`",
+            "largest error: ours",
+            "`f64`",
+            "`f32`",
+        ],
+    );
+    for row in timed.iter().filter(|t| t.way == Way::Hit && !t.set.contains("off the origin")) {
+        let time = |way| {
+            let same = timed.iter().find(|t| t.kind == row.kind && t.set == row.set && t.way == way);
+            same.and_then(|t| t.nanoseconds).map_or("-".into(), |t| brief(t.median))
+        };
+        let errors = |way| {
+            let hard =
+                accurate.iter().find(|a| a.kind == row.kind && a.way == way && a.set == "all hard cases");
+            hard.map(|a| (a.errors, a.rays)).unwrap_or_default()
+        };
+        let (ours, textbook, single) = (errors(Way::Surface), errors(Way::Textbook), errors(Way::Single));
+        table.row([
+            row.kind.clone(),
+            time(Way::Hit),
+            time(Way::Surface),
+            time(Way::Textbook),
+            format!("{} of {}", ours.0.wrong, ours.1),
+            textbook.0.wrong.to_string(),
+            single.0.wrong.to_string(),
+            brief(ours.0.max),
+            brief(textbook.0.max),
+            brief(single.0.max),
+        ]);
+    }
+    table
+}
+
 /// Runs the section: tables, CSV, plot.
 pub fn run(effort: Effort, output: &mut Output) {
     let cases = truth::rays();
@@ -305,6 +350,7 @@ pub fn run(effort: Effort, output: &mut Output) {
         series.entry(t.way).or_default().push((time.median, hard.errors.p99, t.kind.clone()));
     }
     output.table(table);
+    output.summary(summary(&timed, &accurate));
 
     let mut table = Table::new(
         "shapes_random",
