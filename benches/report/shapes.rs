@@ -6,6 +6,7 @@ use crate::quantile::{Errors, brief};
 use crate::table::Table;
 use crate::textbook::{double, single};
 use crate::truth::{self, RayCase, UNIT};
+use crate::verdict;
 use crate::{Effort, Output};
 use rt_core::glam::DVec3;
 use rt_core::poly::{self, Method};
@@ -117,15 +118,6 @@ struct Row {
     nanoseconds: Option<clock::Timing>,
 }
 
-/// Error of a first hit as a distance off the surface in units of the local scale; `None`: the count is wrong.
-fn judge(case: &RayCase, answer: Option<f64>) -> Option<Option<f64>> {
-    match (case.hits.first(), answer) {
-        (None, None) => Some(None),
-        (Some(t), Some(a)) => Some(Some(t.distance(a) * case.off_surface[0])),
-        _ => None,
-    }
-}
-
 /// What the answers to one family are worth.
 #[derive(Default)]
 struct Group {
@@ -141,7 +133,7 @@ fn accuracy(cases: &[RayCase]) -> Vec<Row> {
         let Some(prepared) = Prepared::new(&case.kind, &case.numbers) else { continue };
         let cast = Cast::new(case.ray, case.within);
         for &way in Way::of(&case.kind) {
-            let verdict = judge(case, prepared.first(way, &cast));
+            let verdict = verdict::first_hit(case, prepared.first(way, &cast));
             for set in ["all hard cases", &case.family] {
                 let group = groups.entry((case.kind.clone(), set.into(), way)).or_default();
                 group.rays += 1;
@@ -312,9 +304,8 @@ pub fn run(effort: Effort, output: &mut Output) {
     let cases = truth::rays();
     let accurate = accuracy(&cases);
     for row in &accurate {
-        // The promise: no wrong count, and within 4 units of the local scale after refinement.
         if row.way == Way::Surface {
-            output.demand(row.errors.wrong == 0 && row.errors.max <= 4.0, || {
+            output.demand(verdict::surface_holds(&row.errors), || {
                 format!(
                     "{}, {}: {} wrong counts, error {}",
                     row.kind, row.set, row.errors.wrong, row.errors.max
