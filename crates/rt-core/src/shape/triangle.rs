@@ -333,7 +333,7 @@ mod tests {
         let smooth = triangle.with_normals([0.0, 0.0, 3.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
         let ray = Ray::new([1.0, 1.0, 1.0], [0.0, 0.0, -1.0]);
         let surface = smooth.surface(&ray, smooth.hit(&ray, Interval::FORWARD).unwrap());
-        assert_eq!(surface.uv, DVec2::new(0.5, 0.25));
+        assert_eq!(surface.uv(), DVec2::new(0.5, 0.25));
         assert_eq!(surface.normal, DVec3::Z);
         let half = 0.5_f64.sqrt();
         assert!((surface.shading_normal - DVec3::new(0.0, half, half)).length() < 1e-15);
