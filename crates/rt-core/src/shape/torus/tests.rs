@@ -18,10 +18,7 @@ fn direction() -> impl Strategy<Value = DVec3> {
 
 /// Rings down to a millionth, nearly horns, spindles.
 fn radii() -> impl Strategy<Value = (f64, f64)> {
-    (
-        0.5..2.0_f64,
-        prop_oneof![0.05..0.95_f64, (-6.0..-1.0_f64).prop_map(libm::exp10), 0.95..1.05, 1.0..4.0],
-    )
+    (0.5..2.0_f64, prop_oneof![0.05..0.95_f64, (-6.0..-1.0_f64).prop_map(libm::exp10), 0.95..1.05, 1.0..4.0])
         .prop_map(|(major, ratio)| (major, major * ratio))
 }
 
