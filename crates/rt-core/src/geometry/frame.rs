@@ -45,12 +45,12 @@ impl LocalRay {
 
 /// When the parameters of two objects are too close for their order to be certain.
 ///
-/// A raw `t` is promised within 2^-36 of the local scale: of the distance from the ray's origin to the far side of the
+/// A raw `t` is promised within 2^-30 of the local scale: of the distance from the ray's origin to the far side of the
 /// shape, in lengths of the direction (most are within 4 u of it; the worst are rays that graze a sphere just so
 /// that `f64` can still tell a hit). For shapes inside the scene's box this scale is at most 6 (|o'| + 1), with
 /// |o'| the largest coordinate of the origin in kernel coordinates, as all coordinates there are at most 1: the
 /// distance is at most sqrt(3) (|o'| + 1), the size of the shape at most 2 sqrt(3). Two such errors are less than
-/// 2^-32 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
+/// 2^-26 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
 /// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
@@ -130,7 +130,7 @@ impl Frame {
         if !(far < exp2i(60)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
-        let absolute = (far + 1.0) * exp2i(-30);
+        let absolute = (far + 1.0) * exp2i(-24);
         let window = Window { absolute: absolute * exp2i(-power) };
         // A raw `t` may exceed the interval's end by its error where the true one does not.
         let mut start = within.min * factor - absolute;

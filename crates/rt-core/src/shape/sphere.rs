@@ -10,7 +10,7 @@ use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
-    is_plain, largest, moderate, range_guard, times_power, uncertainty,
+    is_plain, largest, margin, moderate, range_guard, times_power, uncertainty,
 };
 use crate::surface::Coordinates;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
@@ -127,8 +127,9 @@ impl Sphere {
         }
     }
 
-    /// [`Primitive::hit`] where `f64` is in doubt.
+    /// [`Primitive::hit`] where `f64` or the interval leave a doubt.
     #[cold]
+    #[inline(never)]
     fn hit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         let rough = self.rescaled(ray);
         self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
@@ -143,9 +144,9 @@ impl Sphere {
 /// With u = 2^-53, `w x d` errs by less than `2.9 u |w| |d| + u |w x d|`, the rounding of `w` included; hence `D`, where
 /// its sign could be in doubt at all (`|w x d|` about `r |d|` or below the error), by less than
 /// `(5.8 u r |w| + 11 u r^2 + 9 u^2 |w|^2) |d|^2`, less than `(8 u S r + 128 u^2 S^2) |d|^2` for S = |w| + 2 r, with the
-/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^20 times that, the parameters err
-/// by less than 2^-21 of half the chord from the root, and `w.d / |d|^2`, which errs by `9 u |w| / |d|`, by less still:
-/// 2^-19 of half the chord is a margin. `doubt` is 8 u r = 2^-50 r.
+/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^14 times that, the parameters err
+/// by less than 2^-15 of half the chord from the root, and `w.d / |d|^2`, which errs by `9 u |w| / |d|`, by less still:
+/// 2^-13 of half the chord is a margin, and 2^-19 where it is 2^20 times that. `doubt` is 8 u r = 2^-50 r.
 #[inline(always)]
 fn rough(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> Rough {
     let square = d.dot(d);
@@ -161,7 +162,7 @@ fn rough(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> Rough {
     }
     let inverse = 1.0 / square;
     let (middle, half) = (-(w.dot(d) * inverse), sqrt(depth) * inverse);
-    let margin = half * exp2i(-19);
+    let margin = half * margin(depth, doubt);
     Rough::Span([
         Candidate { t: middle - half, margin, part: 0, root: 0 },
         Candidate { t: middle + half, margin, part: 0, root: 1 },
@@ -218,20 +219,21 @@ struct Refined {
 
 /// One or two Newton steps on `|p|^2 = r^2` from the hit's parameter; `None` where they may not be enough.
 ///
-/// The place `p` is known to 2^-75 of the radius (106 bits of a distance below 2^30 radii) and its residual to 2^-102
-/// of the radius squared, which moves the crossing by 2^-103 of that over half the chord, h: by less than 2^-73 radii
-/// while h is above 2^-30 radii. A step of size s, from the side of the root, leaves `s^2 / (2 h)`: less than
+/// With S the distance that the ray comes from and the radius, the place `p` is known to 2^-104 S and its residual,
+/// itself within 2^-102 of r^2, to 2^-102 r S in all, which moves the crossing by 2^-103 r S over half the chord, h: by
+/// less than 2^-73 r while h is above 2^-30 S. A step of size s, from the side of the root, leaves `s^2 / (2 h)`: less than
 /// 2^-73 h for `s <= 2^-36 h`.
 #[inline(always)]
 fn newton<P: Product>(relative: &DoubleVector, d: DVec3, radius: f64, t: f64, root: u32) -> Option<Refined> {
     let square = d.dot(d);
+    let far = largest(relative.high()) + radius;
     let side = if root & 1 == 0 { -1.0 } else { 1.0 };
     let mut t = Double::from(t);
     for _ in 0..2 {
         let p = relative.advanced::<P>(d, t);
         // Half the derivative; its length is half the chord times the direction's square.
         let slope = side * p.high().dot(d);
-        if !(slope * slope > exp2i(-60) * (radius * radius) * square) || slope < 0.0 {
+        if !(slope * slope > exp2i(-60) * (far * far) * square) || slope < 0.0 {
             return None;
         }
         let change = -side * (p.excess::<P>(radius) / (2.0 * slope));
@@ -304,7 +306,25 @@ impl Primitive for Sphere {
         match self.rough(ray) {
             Rough::Miss => None,
             Rough::Doubt => self.hit_in_doubt(ray, within),
-            clear => self.crossing(&clear, ray, within, 0).or_else(|| self.crossing(&clear, ray, within, 1)),
+            Rough::Span([enter, leave]) => {
+                let margin = enter.margin;
+                if enter.t - within.min > margin {
+                    if within.max - enter.t > margin {
+                        return within.admit(enter.t, 0, 0);
+                    }
+                    if enter.t - within.max > margin {
+                        return None;
+                    }
+                } else if within.min - enter.t > margin {
+                    if leave.t - within.min > margin && within.max - leave.t > margin {
+                        return within.admit(leave.t, 0, 1);
+                    }
+                    if within.min - leave.t > margin || leave.t - within.max > margin {
+                        return None;
+                    }
+                }
+                self.hit_in_doubt(ray, within)
+            }
         }
     }
 

@@ -15,12 +15,13 @@
 //! slope. With `q = |e0| + 2 max(R)` an upper bound of `|e0| + |m|` (lines that pass farther away are gone), `D` errs
 //! by less than `4 (|d'|^2 + e1^2) (q + F) F`, including all roundings.
 //!
-//! Where `D` is more than `CLEAR` = 2^20 times that, `F < q / 2^22`, and the parameters err by less than 2^-21 from
-//! the root and twice 2^-22 from the rest, of half the chord `sqrt(D) / |A|`: its 2^-19 is a margin.
+//! Where `D` is more than `CLEAR` = 2^14 times that, `F < q / 2^16`, and the parameters err by less than 2^-15 from
+//! the root and twice 2^-16 from the rest, of half the chord `sqrt(D) / |A|`: its 2^-13 is a margin. Where `D` is 2^20
+//! times that, so is 2^-19.
 
 use super::{BASE, SIDE, TOP};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{CLEAR, Candidate, Rough, moderate};
+use crate::scaled::{CLEAR, Candidate, Rough, margin, moderate};
 use glam::DVec3;
 
 /// The numbers of a frustum, rounded to `f64`, all in one unit of length.
@@ -70,7 +71,7 @@ impl Numbers {
         }
 
         let z0 = z_far + t0 * z_growth;
-        let (enter, leave, half, starts, ends);
+        let (enter, leave, half, starts, ends, relative);
         if SLOPED {
             let slope = self.slope;
             let e0 = self.base_radius + slope * z0;
@@ -82,6 +83,7 @@ impl Numbers {
             if depth < -doubt {
                 return Rough::Miss;
             }
+            relative = margin(depth, doubt);
             let lead = square - e1 * e1;
             // The sign of the leading coefficient errs with K u (1 + |k|) at most, far less than 2^-10; nearer to
             // zero one root runs away and its error grows.
@@ -109,12 +111,13 @@ impl Numbers {
             if !(depth > CLEAR * doubt) {
                 return Rough::Doubt;
             }
+            relative = margin(depth, doubt);
             half = sqrt(depth * inverse);
             (enter, leave) = (-half, half);
             (starts, ends) = (true, true);
         }
 
-        let margin = half * exp2i(-19);
+        let margin = half * relative;
         let z_margin = z_growth.abs() * margin + 4.0 * error;
         let zone = |s: f64| {
             let z = z0 + s * z_growth;
