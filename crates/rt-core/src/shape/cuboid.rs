@@ -5,7 +5,8 @@
 //! two of them is certain unless they agree to 4 u; then they are compared exactly, as fractions. A turned box takes
 //! the ray into its own axes first and carries the absolute errors of that.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, U};
+use super::flat::{self, LEAST_CERTAIN, U};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -182,7 +183,7 @@ impl Slabs {
         (9.0 * U) * t.abs() + 2.0 * self.slack
     }
 
-    /// Whether it is certain whether the line enters: the smaller parameter, which is finite when the other is
+    /// Whether the order of the two, and thus whether the line enters, is certain: the smaller parameter, which is finite when the other is
     /// infinite, tells how far apart the two have to be.
     #[inline(always)]
     fn decides(&self, entry: f64, leave: f64) -> bool {
@@ -436,7 +437,7 @@ impl Piece for Face<'_> {
                 (flat::clamped(at.point(self.plane().anchor), *min, *max), local, local)
             }
             Some(turn) => {
-                let along = |axis: DVec3| flat::dot::<P>(&at.local, &flat::doubles(axis), 0.0).0.to_f64();
+                let along = |axis: DVec3| meeting::dot::<P>(&at.local, &flat::doubles(axis), 0.0).0.to_f64();
                 let [x, y, z] = turn.axes;
                 let own = DVec3::new(along(x), along(y), along(z)) * exp2i(at.power);
                 (at.point(turn.corner), at.local(), on_face(own))
@@ -473,7 +474,7 @@ impl Primitive for Cuboid {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        flat::surface(&Face::new(self, hit.part()), ray, hit)
+        meeting::surface(&Face::new(self, hit.part()), ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {

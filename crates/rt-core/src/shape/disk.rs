@@ -1,6 +1,7 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, Rough, U};
+use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -92,7 +93,7 @@ impl Disk {
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
-        let at = flat::meet(self, ray)?;
+        let at = meeting::meet(self, ray)?;
         if run(InDisk { at: &at, radius: self.radius }) { within.admit(at.t, 0, 0) } else { None }
     }
 }
@@ -179,7 +180,7 @@ impl Primitive for Disk {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        flat::surface(self, ray, hit)
+        meeting::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {

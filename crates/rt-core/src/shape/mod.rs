@@ -6,6 +6,7 @@ mod cylinder;
 mod disk;
 mod flat;
 mod frustum;
+mod meeting;
 mod plane;
 mod sphere;
 mod torus;

@@ -4,7 +4,8 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, ExactPlane, Meeting, Piece, Rough};
+use super::flat::{self, Rough};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::expansion::Expansion;
 use crate::kernel::Product;
 use crate::scaled::checked_point;
@@ -79,7 +80,7 @@ impl Plane {
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
-        within.admit(flat::meet(self, ray)?.t, 0, 0)
+        within.admit(meeting::meet(self, ray)?.t, 0, 0)
     }
 }
 
@@ -126,7 +127,7 @@ impl Primitive for Plane {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        flat::surface(self, ray, hit)
+        meeting::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {

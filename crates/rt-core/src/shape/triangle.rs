@@ -6,7 +6,8 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, Rough, U};
+use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -133,7 +134,7 @@ impl Triangle {
         if least < 0 && most > 0 {
             return None;
         }
-        within.admit(flat::meet(self, ray)?.t, 0, 0)
+        within.admit(meeting::meet(self, ray)?.t, 0, 0)
     }
 }
 
@@ -248,7 +249,7 @@ impl Triangle {
             let (x, y) = (p[0].mul::<P>(q[1]), p[1].mul::<P>(q[0]));
             let (s, e) = two_difference(x.high, y.high);
             let (high, low) = fast_two_sum(s, e + (x.low - y.low));
-            flat::quotient::<P>(Double { high, low }, area, inverse).high.clamp(0.0, 1.0)
+            meeting::quotient::<P>(Double { high, low }, area, inverse).high.clamp(0.0, 1.0)
         };
         DVec2::new(weight(l, edge(c)), weight(edge(b), l))
     }
@@ -295,7 +296,7 @@ impl Primitive for Triangle {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        flat::surface(self, ray, hit)
+        meeting::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {
