@@ -96,7 +96,9 @@ impl Kind {
 /// Where a case takes place: every length times `scale`, moved by `offset` sizes.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
+    /// What all lengths are multiplied by.
     pub scale: f64,
+    /// How many sizes of the shape everything is moved by.
     pub offset: f64,
 }
 
@@ -138,6 +140,7 @@ pub const CHECKS: [(&str, Check); 6] = [
     ("leak", leak),
     ("ghost", ghost),
 ];
+/// Counts wrong pixels; `None`: the check does not apply to this shape.
 pub type Check = fn(&Renderer, Kind, Place, u32) -> Option<usize>;
 
 fn settings(pixels: u32, shadows: bool) -> Settings {
