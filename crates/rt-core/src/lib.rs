@@ -33,7 +33,7 @@ mod transform;
 
 pub use bounds::Aabb;
 pub use error::Error;
-pub use geometry::{Found, Geometry, GeometryBuilder};
+pub use geometry::{DirectionCube, Found, Geometry, GeometryBuilder, Screen};
 pub use hit::{Hit, Interval};
 pub use primitive::Primitive;
 pub use ray::Ray;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use rt_core::glam::DVec3;
 use rt_core::kernel::{Level, set_level};
 use rt_core::shape::*;
-use rt_core::{Found, Geometry, Interval, Primitive, Ray, Shape, Side};
+use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side};
 use std::ops::ControlFlow;
 
 /// Coordinates from a coarse grid, so that faces coincide and rays meet edges, and from anywhere.
@@ -184,12 +184,52 @@ fn compare_batches(geometry: &Geometry, rays: &[(Ray, Interval)]) -> Result<(), 
     Ok(())
 }
 
+/// Rays that begin at a point, and rays that end there.
+fn compare_cubes(fast: &Geometry, plain: &Geometry, rays: &[(Ray, Interval)]) -> Result<(), TestCaseError> {
+    let screens: Vec<Screen> = (0..plain.shapes().len())
+        .map(|object| [Screen::Opaque, Screen::Sheer, Screen::Sheer, Screen::Absent][object % 4])
+        .collect();
+    let path = |blocked: &dyn Fn(&mut dyn FnMut(Found)) -> bool| {
+        let mut crossed = Vec::new();
+        let blocked = blocked(&mut |found| crossed.push(found));
+        crossed.sort_by_key(|found| found.object);
+        if blocked { None } else { Some(crossed) }
+    };
+    for (first, _) in rays.iter().take(3) {
+        let Some(cube) = fast.cube_about(first.origin) else { continue };
+        for (ray, within) in rays {
+            let ray = Ray::new(first.origin, ray.direction);
+            let found = plain.nearest(&ray, *within);
+            prop_assert_eq!(fast.nearest_from(&cube, &ray, *within), found, "{:?} {:?}", ray, within);
+            let Some(found) = found else { continue };
+            let surface = plain.surface(&ray, found);
+            for side in [Side::Outside, Side::Inside] {
+                let from = surface.departure(found.object, found.hit, side);
+                let start = from.ray(DVec3::ZERO).0.origin;
+                let (back, within) = (Ray::new(start, first.origin - start), Interval::new(0.0, 1.0));
+                for screens in [&screens[..], &[]] {
+                    let truth = path(&|each| plain.blocked(&back, within, Some(&from), screens, each));
+                    prop_assert_eq!(
+                        &path(&|each| fast.blocked(&back, within, Some(&from), screens, each)),
+                        &truth
+                    );
+                    prop_assert_eq!(&path(&|each| fast.blocked_towards(&cube, &from, screens, each)), &truth);
+                }
+                let occluded = plain.occluded_leaving(&back, within, &from);
+                prop_assert_eq!(fast.blocked_towards(&cube, &from, &[], &mut |_| ()), occluded);
+            }
+        }
+    }
+    Ok(())
+}
+
 fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
     let (fast, plain) = scene.geometries();
     let rays: Vec<(Ray, Interval)> = casts.iter().map(|cast| cast.ray(scene)).collect();
     for level in [Level::Portable, Level::Avx2] {
         set_level(level);
         compare_batches(&fast, &rays)?;
+        compare_cubes(&fast, &plain, &rays)?;
         for (ray, within) in &rays {
             let found = plain.nearest(ray, *within);
             prop_assert_eq!(fast.nearest(ray, *within), found, "nearest {:?} {:?}", ray, within);

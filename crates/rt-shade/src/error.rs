@@ -141,6 +141,12 @@ pub enum Error {
         /// What it did.
         reason: String,
     },
+    /// There is no memory for a picture.
+    #[error("there is no memory for a picture of {bytes} bytes")]
+    Memory {
+        /// The bytes it takes.
+        bytes: u128,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

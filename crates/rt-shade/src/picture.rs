@@ -20,9 +20,34 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A black picture.
+    /// A black picture. Aborts when there is no memory for it: see [`Picture::try_new`].
     pub fn new(width: u32, height: u32) -> Self {
         Picture { width, height, pixels: vec![[0.0; 3]; width as usize * height as usize] }
+    }
+
+    /// A black picture.
+    ///
+    /// # Errors
+    /// [`Error::Memory`] when there is no memory for it.
+    pub fn try_new(width: u32, height: u32) -> Result<Self, Error> {
+        Ok(Picture::within(Picture::reserve(width, height)?, width, height))
+    }
+
+    /// Room for the pixels of a picture, untouched.
+    pub(crate) fn reserve(width: u32, height: u32) -> Result<Vec<[f32; 3]>, Error> {
+        let mut room = Vec::new();
+        let count = (width as usize).checked_mul(height as usize);
+        match count.map(|count| room.try_reserve_exact(count)) {
+            Some(Ok(())) => Ok(room),
+            _ => Err(Error::Memory { bytes: 12 * u128::from(width) * u128::from(height) }),
+        }
+    }
+
+    /// A black picture in this room.
+    pub(crate) fn within(mut room: Vec<[f32; 3]>, width: u32, height: u32) -> Self {
+        room.clear();
+        room.resize(width as usize * height as usize, [0.0; 3]);
+        Picture { width, height, pixels: room }
     }
 
     /// Columns.

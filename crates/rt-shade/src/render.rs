@@ -44,10 +44,12 @@ pub struct Rendering {
 ///
 /// # Errors
 /// What [`Settings::check`] finds; [`Error::Object`] when a shape or texture of your own panics or returns NaN;
-/// [`Error::Threads`].
+/// [`Error::Threads`]; [`Error::Memory`].
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, Error> {
     settings.check()?;
     let region = settings.extent();
+    // First, so that a picture too large ends here; the memory itself is used when the tiles are done.
+    let room = Picture::reserve(region.width, region.height)?;
     let edge = match settings.antialias {
         Antialias::Adaptive { depth, .. } => adaptive::tile_edge(depth),
         _ => settings.tile,
@@ -66,7 +68,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         Some(done)
     };
     let finished = on_threads(settings.threads, &tiles, work)?;
-    let mut picture = Picture::new(region.width, region.height);
+    let mut picture = Picture::within(room, region.width, region.height);
     let (mut stats, mut complete) = (Stats::default(), true);
     for (place, tile) in tiles.iter().zip(finished) {
         match tile {

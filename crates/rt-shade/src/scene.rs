@@ -6,7 +6,7 @@ use crate::medium::Medium;
 use crate::texture::Mapping;
 use crate::{Camera, Color, Error, Light, Material, Paint, Texture};
 use rt_core::glam::DVec3;
-use rt_core::{Geometry, GeometryBuilder, Interval, Ray, Shape};
+use rt_core::{DirectionCube, Geometry, GeometryBuilder, Interval, Ray, Screen, Shape};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,27 +33,19 @@ pub struct Scene {
     pub(crate) materials: Vec<Material>,
     pub(crate) objects: Vec<Object>,
     pub(crate) geometry: Geometry,
-    /// By object: what it leaves of the light of a lamp.
-    pub(crate) blocks: Vec<Blocks>,
+    /// By object: what it does to the light of a lamp.
+    pub(crate) screens: Vec<Screen>,
     /// Whether every object stops all light.
     pub(crate) all_opaque: bool,
+    /// What the eye sees where, and each lamp: for few objects.
+    pub(crate) seen_by_eye: Option<DirectionCube>,
+    pub(crate) seen_by_lamp: Vec<Option<DirectionCube>>,
     /// By object: how its texture coordinates lead to a picture.
     pub(crate) mappings: Vec<Mapping>,
     /// The media that the eye is in.
     pub(crate) around_eye: Vec<Medium>,
     /// How long the acceleration structure took.
     pub(crate) build_time: Duration,
-}
-
-/// What an object leaves of the light of a lamp at each crossing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Blocks {
-    /// Nothing of it.
-    All,
-    /// A share of it.
-    Some(Color),
-    /// All of it.
-    Nothing,
 }
 
 impl Scene {
@@ -225,19 +217,21 @@ impl SceneBuilder {
                 return Err(Error::NoMaterial { object, material, count: self.materials.len() });
             }
         }
-        let blocks = self.objects.iter().map(|object| {
+        // What lamps' rays meet.
+        let screens = self.objects.iter().map(|object| {
             let transmit = self.materials[object.material as usize].transmit;
             match object.no_shadow {
-                true => Blocks::Nothing,
-                false if transmit.is_black() => Blocks::All,
-                false if transmit == Color::WHITE => Blocks::Nothing,
-                false => Blocks::Some(transmit),
+                false if transmit.is_black() => Screen::Opaque,
+                false if transmit != Color::WHITE => Screen::Sheer,
+                _ => Screen::Absent,
             }
         });
-        let blocks: Vec<Blocks> = blocks.collect();
-        let all_opaque = blocks.iter().all(|&blocks| blocks == Blocks::All);
+        let screens: Vec<Screen> = screens.collect();
+        let all_opaque = screens.iter().all(|&screen| screen == Screen::Opaque);
         let start = Instant::now();
         let geometry = self.geometry.build();
+        let seen_by_eye = geometry.cube_about(camera.eye());
+        let seen_by_lamp = self.lights.iter().map(|light| geometry.cube_about(light.position())).collect();
         let build_time = start.elapsed();
         let mappings = geometry.shapes().iter().map(|shape| match shape {
             Shape::Plane(_) | Shape::Disk(_) => Mapping::Tiles,
@@ -255,7 +249,9 @@ impl SceneBuilder {
             materials: self.materials,
             objects: self.objects,
             geometry,
-            blocks,
+            screens,
+            seen_by_eye,
+            seen_by_lamp,
             all_opaque,
             mappings,
             around_eye,

@@ -76,13 +76,13 @@ impl Checker {
     /// The colour at this point of the shape's own frame.
     #[inline]
     pub fn color(&self, p: DVec3) -> Color {
-        // The parity of each floor, exact at any size: f - 2 floor(f / 2) is 0 or 1.
+        // The parity of each floor, exact at any size: beyond 2^53 every number is even, as is what a cast makes of
+        // numbers beyond the range of integers but for the largest one.
         let parity = |x: f64| {
-            let f = (x / self.size).floor();
-            f - 2.0 * (0.5 * f).floor()
+            let x = x / self.size;
+            if x < EXACT { floor(x) as i64 & 1 } else { 0 }
         };
-        let odd = (parity(p.x) != 0.0) ^ (parity(p.y) != 0.0) ^ (parity(p.z) != 0.0);
-        self.colors[usize::from(odd)]
+        self.colors[((parity(p.x) ^ parity(p.y) ^ parity(p.z)) & 1) as usize]
     }
 }
 
@@ -144,8 +144,8 @@ impl ImageTexture {
         let uv = if mapping == Mapping::Tiles { uv / self.size } else { uv };
         // The whole turns go first: what is left is exact, and its product with the width keeps its digits. Rows run
         // downwards, v upwards.
-        let (left, right, x) = neighbours(uv.x - uv.x.floor(), self.width, true);
-        let v = if mapping == Mapping::Sheet { uv.y.clamp(0.0, 1.0) } else { uv.y - uv.y.floor() };
+        let (left, right, x) = neighbours(uv.x - floor(uv.x), self.width, true);
+        let v = if mapping == Mapping::Sheet { uv.y.clamp(0.0, 1.0) } else { uv.y - floor(uv.y) };
         let (top, bottom, y) = neighbours(1.0 - v, self.height, mapping != Mapping::Sheet);
         let texel = |column: usize, row: usize| {
             let index = row * self.width as usize + column;
@@ -177,7 +177,7 @@ impl ImageTexture {
 #[inline]
 fn neighbours(at: f64, count: u32, wraps: bool) -> (usize, usize, f64) {
     let x = at * f64::from(count) - 0.5;
-    let first = x.floor();
+    let first = floor(x);
     let last = i64::from(count) - 1;
     // From -1 to `last`; NaN becomes 0.
     let index = first as i64;
@@ -191,6 +191,20 @@ fn neighbours(at: f64, count: u32, wraps: bool) -> (usize, usize, f64) {
         i.clamp(0, last) as usize
     };
     (place(a), place(b), x - first)
+}
+
+/// From here on every number is an even integer.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// The greatest integer that is not above `x`: without a call on machines that have no instruction for it.
+#[inline]
+fn floor(x: f64) -> f64 {
+    if x.abs() < EXACT {
+        let whole = x as i64 as f64;
+        if whole > x { whole - 1.0 } else { whole }
+    } else {
+        x
+    }
 }
 
 pub(crate) fn check_size(size: f64) -> Result<(), Error> {
@@ -208,6 +222,18 @@ mod tests {
 
     fn checker(size: f64) -> Checker {
         Checker::new([Color::WHITE, Color::BLACK], size).unwrap()
+    }
+
+    #[test]
+    fn floors_are_exact() {
+        for x in
+            [0.0, 0.5, 1.0, -0.25, -1.0, -1.5, 1e15 + 0.5, -1e15 - 0.5, 4e15, 1e300, -1e300, f64::INFINITY]
+        {
+            assert_eq!(floor(x), x.floor());
+            assert_eq!(floor(x.next_down()), x.next_down().floor());
+            assert_eq!(floor(x.next_up()), x.next_up().floor());
+        }
+        assert!(floor(f64::NAN).is_nan());
     }
 
     #[test]

@@ -13,11 +13,9 @@
 use crate::material::{Optics, Paint};
 use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
-use crate::scene::Blocks;
 use crate::{Color, Material, Scene, Settings, Stats};
 use rt_core::glam::DVec3;
-use rt_core::{Departure, Found, Interval, Ray, Side, Surface};
-use std::ops::ControlFlow;
+use rt_core::{Departure, DirectionCube, Found, Interval, Ray, Side, Surface};
 
 /// Traces rays through a scene, one thread's worth.
 pub(crate) struct Tracer<'s> {
@@ -61,13 +59,25 @@ impl<'s> Tracer<'s> {
 
     /// The colour that a ray from the eye sees.
     pub fn eye(&mut self, ray: &Ray) -> Color {
-        let found = self.scene.geometry.nearest(ray, Interval::FORWARD);
+        let scene = self.scene;
+        let found = match &scene.seen_by_eye {
+            Some(cube) => scene.geometry.nearest_from(cube, ray, Interval::FORWARD),
+            None => scene.geometry.nearest(ray, Interval::FORWARD),
+        };
         self.seen_by_eye(ray, found)
     }
 
     /// The nearest hits of rays from the eye.
     pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
-        self.scene.geometry.nearest_many(rays, within, found);
+        let scene = self.scene;
+        match &scene.seen_by_eye {
+            Some(cube) => {
+                for ((ray, within), found) in rays.iter().zip(within).zip(found) {
+                    *found = scene.geometry.nearest_from(cube, ray, *within);
+                }
+            }
+            None => scene.geometry.nearest_many(rays, within, found),
+        }
     }
 
     /// The same for a ray whose nearest hit is known.
@@ -125,7 +135,7 @@ impl<'s> Tracer<'s> {
         let body = paint * material.diffuse;
         let mut sum = scene.ambient * body;
         let from = v.surface.departure(v.found.object, v.found.hit, v.side);
-        for light in &scene.lights {
+        for (light, cube) in scene.lights.iter().zip(&scene.seen_by_lamp) {
             let to_light = light.position() - v.surface.point;
             let distance = to_light.length();
             let to_light = to_light / distance;
@@ -140,7 +150,7 @@ impl<'s> Tracer<'s> {
             }
             let mut arriving = light.color() * (share * light.attenuation().at(distance));
             if self.shadows {
-                match self.visibility(&from, light.position()) {
+                match self.visibility(&from, light.position(), cube.as_ref()) {
                     None => continue,
                     Some(visible) => arriving *= visible,
                 }
@@ -157,34 +167,25 @@ impl<'s> Tracer<'s> {
     }
 
     /// What a straight ray to a lamp leaves of its light; `None` when something opaque is in the way.
-    fn visibility(&mut self, from: &Departure, lamp: DVec3) -> Option<Color> {
+    fn visibility(&mut self, from: &Departure, lamp: DVec3, cube: Option<&DirectionCube>) -> Option<Color> {
         self.stats.shadow_rays += 1;
         let scene = self.scene;
-        let start = from.ray(DVec3::ZERO).0.origin;
-        let ray = Ray::new(start, lamp - start);
-        let within = Interval::new(0.0, 1.0);
-        // Most lamps are in plain sight, and the question whether anything is there is cheap.
-        if !scene.geometry.occluded_leaving(&ray, within, from) {
-            return Some(Color::WHITE);
-        }
-        if scene.all_opaque {
-            self.stats.shadow_hits += 1;
-            return None;
-        }
         let filters = &mut self.filters;
         filters.clear();
-        let mut blocked = false;
-        scene.geometry.crossings(&ray, within, Some(from), &mut |found| {
-            match scene.blocks[found.object as usize] {
-                Blocks::All => {
-                    blocked = true;
-                    return ControlFlow::Break(());
+        let transmit =
+            |object: u32| scene.materials[scene.objects[object as usize].material as usize].transmit;
+        let mut each = |found: Found| filters.push(transmit(found.object));
+        let blocked = match cube {
+            Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
+            None => {
+                let start = from.ray(DVec3::ZERO).0.origin;
+                let (ray, within) = (Ray::new(start, lamp - start), Interval::new(0.0, 1.0));
+                match scene.all_opaque {
+                    true => scene.geometry.occluded_leaving(&ray, within, from),
+                    false => scene.geometry.blocked(&ray, within, Some(from), &scene.screens, &mut each),
                 }
-                Blocks::Some(left) => filters.push(left),
-                Blocks::Nothing => {}
             }
-            ControlFlow::Continue(())
-        });
+        };
         if blocked {
             self.stats.shadow_hits += 1;
             return None;

@@ -107,6 +107,19 @@ impl Frame {
         )
     }
 
+    /// The window of ties that [`enter`](Frame::enter) gives for this ray, which must be valid.
+    #[inline(always)]
+    pub fn window(&self, ray: &Ray) -> Window {
+        let none = Window { absolute: 0.0 };
+        let direction_exponent = exponent(ray.direction.abs().max_element());
+        let power = direction_exponent - self.exponent;
+        if !self.inhabited || direction_exponent < -1000 || !(-1000..=1000).contains(&power) {
+            return none;
+        }
+        let far = ((ray.origin - self.center) * exp2i(-self.exponent)).abs().max_element();
+        if far < exp2i(60) { Window { absolute: (far + 1.0) * exp2i(-30) * exp2i(-power) } } else { none }
+    }
+
     /// The ray in kernel coordinates and the window of its ties; no ray when it misses the box of the scene.
     ///
     /// The ray must be valid and the interval not empty.

@@ -14,6 +14,7 @@
 
 mod batch;
 mod builder;
+mod cube;
 mod frame;
 mod packet;
 mod query;
@@ -27,8 +28,10 @@ use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
 use core::ops::ControlFlow;
+pub use cube::DirectionCube;
 use frame::{Frame, LocalRay};
-use query::{Any, Contest, Crossings, Nearest, Query, Ruling};
+pub use query::Screen;
+use query::{Any, Contest, Crossings, Nearest, Path, Query, Ruling};
 use store::{Run, Store};
 use traverse::traverse;
 use tree::{Child, Tree};
@@ -161,6 +164,24 @@ impl Geometry {
     /// Whether anything lies inside the interval, for a ray that leaves a surface: see [`Departure`].
     pub fn occluded_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> bool {
         vectorize(FindAny { geometry: self, ray, within, from: Some(from) })
+    }
+
+    /// Whether anything opaque lies inside the interval, and what lies there that is not: in one search.
+    ///
+    /// `screens` says of each object, by index, what it does to the ray; those beyond its end are opaque. While
+    /// nothing opaque is found, the crossings of [`Screen::Sheer`] objects are reported to `each`, in no particular
+    /// order; they mean nothing when the answer is `true`. With `from`, the ray leaves that surface.
+    pub fn blocked(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        from: Option<&Departure>,
+        screens: &[Screen],
+        each: &mut dyn FnMut(Found),
+    ) -> bool {
+        let skip = from.map(|from| from.object);
+        let path = Path { within, skip, screens, each, blocked: false };
+        vectorize(FindPath { geometry: self, ray, from, path })
     }
 
     /// All crossings inside the interval of all objects, in no particular order, but ascending for each object;
@@ -308,6 +329,33 @@ impl Vectorized for FindAny<'_> {
         let local = geometry.frame.enter(ray, within).0;
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut any);
         any.found
+    }
+}
+
+struct FindPath<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    from: Option<&'a Departure>,
+    path: Path<'a>,
+}
+
+impl Vectorized for FindPath<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        let FindPath { geometry, ray, from, mut path } = self;
+        let within = path.within;
+        if !is_legal(ray, within) {
+            return false;
+        }
+        if let Some(from) = from
+            && path.leave(geometry, ray, from).is_break()
+        {
+            return true;
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut path);
+        path.blocked
     }
 }
 

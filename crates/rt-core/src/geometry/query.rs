@@ -1,7 +1,7 @@
 //! What is asked of the shapes that a ray may meet. No answer depends on the order in which they are seen.
 
-use super::Found;
 use super::frame::Window;
+use super::{Found, Geometry};
 use crate::{Departure, Hit, Interval, Primitive, Ray};
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
@@ -155,6 +155,73 @@ impl Query for Any {
         if self.skip != Some(object) && shape.hit(ray, self.within).is_some() {
             self.found = true;
             return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What an object does to a ray that asks for a [path](super::Geometry::blocked).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Screen {
+    /// It blocks the ray.
+    Opaque,
+    /// The ray goes on; each crossing is reported.
+    Sheer,
+    /// It is not there.
+    Absent,
+}
+
+/// Whether anything opaque is hit, and what is crossed otherwise.
+pub(super) struct Path<'a> {
+    pub within: Interval,
+    pub skip: Option<u32>,
+    pub screens: &'a [Screen],
+    pub each: &'a mut dyn FnMut(Found),
+    pub blocked: bool,
+}
+
+impl Path<'_> {
+    #[inline(always)]
+    pub fn screen(&self, object: u32) -> Screen {
+        self.screens.get(object as usize).copied().unwrap_or(Screen::Opaque)
+    }
+
+    /// Shows it the shape that the ray leaves.
+    #[inline(always)]
+    pub fn leave(&mut self, geometry: &Geometry, ray: &Ray, from: &Departure) -> ControlFlow<()> {
+        let (object, within) = (from.object, self.within);
+        let Some(shape) = geometry.shapes.get(object as usize) else { return ControlFlow::Continue(()) };
+        match self.screen(object) {
+            Screen::Opaque if shape.hit_leaving(ray, within, from).is_some() => {
+                self.blocked = true;
+                return ControlFlow::Break(());
+            }
+            Screen::Sheer => {
+                shape.crossings_leaving(ray, within, from, &mut |hit| (self.each)(Found { object, hit }));
+            }
+            Screen::Opaque | Screen::Absent => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Query for Path<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.skip == Some(object) {
+            return ControlFlow::Continue(());
+        }
+        match self.screen(object) {
+            Screen::Opaque if shape.hit(ray, self.within).is_some() => {
+                self.blocked = true;
+                return ControlFlow::Break(());
+            }
+            Screen::Sheer => shape.crossings(ray, self.within, &mut |hit| (self.each)(Found { object, hit })),
+            Screen::Opaque | Screen::Absent => {}
         }
         ControlFlow::Continue(())
     }

@@ -309,6 +309,9 @@ impl Primitive for Torus {
 
     fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
         let ray = self.scaled(ray)?;
+        if leaving::never_returns(self, &ray, from) {
+            return None;
+        }
         let mut first = None;
         let each = |hit| {
             first = Some(hit);
@@ -320,6 +323,9 @@ impl Primitive for Torus {
 
     fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
         let Some(ray) = self.scaled(ray) else { return };
+        if leaving::never_returns(self, &ray, from) {
+            return;
+        }
         let each = |hit| {
             each(hit);
             true

@@ -338,3 +338,24 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #[test]
+    fn those_that_never_return_do_not(torus in torus(), u in 0.0..1.0_f64, v in 0.0..1.0_f64, d in direction()) {
+        let (p, n) = place(&torus, u, v);
+        let ray = Ray::new(p + n * torus.minor, -n);
+        let mut arrivals = all(&torus, &ray).into_iter();
+        if let Some(hit) = arrivals.find(|hit| hit.root() % 2 == 0) {
+            let surface = torus.surface(&ray, hit);
+            let from = surface.departure(0, hit, Side::Outside);
+            let (ray, within) = from.ray(if d.dot(surface.normal) < 0.0 { -d } else { d });
+            let scaled = torus.scaled(&ray).unwrap();
+            if leaving::never_returns(&torus, &scaled, &from) {
+                let mut found = 0;
+                let each = |_| { found += 1; true };
+                kernel::run(Leave { torus: &torus, ray: &scaled, within, from: &from, first: false, each });
+                prop_assert_eq!(found, 0);
+            }
+        }
+    }
+}
