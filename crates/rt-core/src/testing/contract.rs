@@ -265,7 +265,7 @@ impl Check<'_> {
     fn record(&self, ray: &Ray, hit: Hit, surface: &Surface) -> Result<(), Failure> {
         let fail = |promise, found| Err(Failure { promise, ray: *ray, within: Interval::FORWARD, found });
         let Surface { point, local, normal, shading_normal, error, t, .. } = *surface;
-        let numbers = [point, local, normal, shading_normal, surface.object_point, surface.uv.extend(0.0)];
+        let numbers = [point, local, normal, shading_normal, surface.object_point, surface.uv().extend(0.0)];
         if !numbers.iter().all(|v| v.is_finite()) || error < 0.0 || !error.is_finite() || !t.is_finite() {
             return fail("a surface record is finite", format!("{surface:?}"));
         }
