@@ -97,6 +97,10 @@ fn check_ray(shape: &Shape, ray: &Ray, within: Interval) -> Result<(), String> {
 fn shapes(kind: u32) {
     for (seed, mut random) in cases() {
         let Ok(shape) = shape(&mut random, kind) else { continue };
+        // The sheets of such a spindle are nearer to each other than a point is known: unsupported.
+        if matches!(&shape, Shape::Torus(torus) if torus.major() < 1e-12 * torus.minor()) {
+            continue;
+        }
         let within = if random.once_in(2) {
             Interval::LINE
         } else {
