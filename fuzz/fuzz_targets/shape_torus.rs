@@ -8,5 +8,9 @@ use rt_fuzz::Case;
 fuzz_target!(|case: Case| {
     let [a, b, _] = case.points.map(|p| p.value());
     let [l, m] = case.lengths.map(|l| l.value());
+    // The sheets of such a spindle are nearer to each other than a point is known: unsupported.
+    if l < 1e-12 * m {
+        return;
+    }
     case.check(Torus::new(a, b, l, m), true);
 });

@@ -249,9 +249,11 @@ impl Frustum {
         let reach =
             DVec3::new(sqrt(a.y * a.y + a.z * a.z), sqrt(a.z * a.z + a.x * a.x), sqrt(a.x * a.x + a.y * a.y))
                 * (1.0 + exp2i(-50));
+        // A point is promised within an ulp of the size, along each axis, however thin the solid is along it.
+        let ulp = DVec3::splat((self.numbers.height + self.numbers.reach) * exp2i(-52));
         let disc = |center: DVec3, radius: f64| Aabb {
-            min: (center - reach * radius).map(|x| x.next_down().next_down()),
-            max: (center + reach * radius).map(|x| x.next_up().next_up()),
+            min: (center - (reach * radius + ulp)).map(|x| x.next_down().next_down()),
+            max: (center + (reach * radius + ulp)).map(|x| x.next_up().next_up()),
         };
         disc(self.base, self.base_radius).union(&disc(self.top, self.top_radius))
     }
