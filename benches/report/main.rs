@@ -17,6 +17,7 @@ mod shapes;
 mod table;
 mod textbook;
 mod truth;
+mod verdict;
 
 pub use output::Output;
 use std::process::ExitCode;

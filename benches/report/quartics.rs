@@ -4,7 +4,8 @@ use crate::clock::{self, Pass};
 use crate::plot::{Series, scatter};
 use crate::quantile::{Errors, brief};
 use crate::table::Table;
-use crate::truth::{self, QuarticCase, UNIT};
+use crate::truth::{self, QuarticCase};
+use crate::verdict::{self, Tally};
 use crate::{Effort, Output};
 use rt_core::Interval;
 use rt_core::poly::{self, Method};
@@ -12,41 +13,6 @@ use std::collections::BTreeMap;
 
 const METHODS: [(Method, &str); 3] =
     [(Method::Certified, "ours"), (Method::Ferrari, "Ferrari"), (Method::GraphicsGems, "Graphics Gems")];
-
-/// What one answer is worth.
-#[derive(Default)]
-struct Tally {
-    rows: usize,
-    wrong: usize,
-    wrong_without_excuse: usize,
-    errors: Vec<f64>,
-}
-
-impl Tally {
-    /// Compares with the truth: the count as distinct roots or with multiplicity, then simple roots one by one.
-    fn add(&mut self, case: &QuarticCase, method: Method) {
-        self.rows += 1;
-        let found = poly::roots(case.coefficients, Interval::LINE, method);
-        let found: Vec<(f64, u32)> = found.iter().map(|r| (r.x, r.multiplicity)).collect();
-        let total = |roots: &[(f64, u32)]| roots.iter().map(|r| r.1).sum::<u32>();
-        let simple = case.roots.iter().all(|r| r.1 == 1);
-        let distinct = found.len() == case.roots.len() && !(simple && found.iter().any(|r| r.1 != 1));
-        let counted = !simple && total(&found) == case.roots.iter().map(|r| r.1).sum::<u32>();
-        if !(distinct || counted) {
-            self.wrong += 1;
-            // Without an excuse: the count is stable under any relative change of the coefficients by 64 units.
-            self.wrong_without_excuse += usize::from(case.margin > 64.0 * UNIT);
-        } else if distinct {
-            for ((x, _), (truth, multiplicity)) in found.iter().zip(&case.roots) {
-                if *multiplicity == 1 {
-                    let scale = truth.nearest.abs();
-                    let error = truth.distance(*x);
-                    self.errors.push(if error == 0.0 { 0.0 } else { error / scale / UNIT });
-                }
-            }
-        }
-    }
-}
 
 /// Runs the section: tables, CSV, plot.
 pub fn run(effort: Effort, output: &mut Output) {
@@ -95,14 +61,16 @@ pub fn run(effort: Effort, output: &mut Output) {
             };
             let mut tally = Tally::default();
             for case in cases {
-                tally.add(case, method);
-                all.entry(name).or_default().add(case, method);
+                let found = poly::roots(case.coefficients, Interval::LINE, method);
+                let found: Vec<(f64, u32)> = found.iter().map(|r| (r.x, r.multiplicity)).collect();
+                tally.add(case, &found);
+                all.entry(name).or_default().add(case, &found);
             }
             times.entry(name).or_default().push(timing.median * cases.len() as f64);
             let errors = Errors::of(std::mem::take(&mut tally.errors), tally.wrong);
             if method == Method::Certified {
-                output.demand(tally.wrong == 0 && errors.max <= 2.0, || {
-                    format!("quartics, {family}: {} wrong counts, error {}", tally.wrong, errors.max)
+                output.demand(verdict::roots_hold(&errors), || {
+                    format!("quartics, {family}: {} wrong counts, error {}", errors.wrong, errors.max)
                 });
             }
             points.entry(name).or_default().push((timing.median, errors.p99, String::new()));
@@ -142,7 +110,7 @@ pub fn run(effort: Effort, output: &mut Output) {
         let name = format!("{name}: {} wrong counts", tally.wrong);
         series.push(Series { name, points: points.remove(method_name).unwrap_or_default() });
     }
-    output.table(summary);
+    output.summary(summary);
     output.csv_only(by_family);
     output.plot("quartics", |path| {
         scatter(

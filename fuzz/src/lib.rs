@@ -3,7 +3,7 @@
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use rt_core::glam::DVec3;
 use rt_core::testing::{Effort, check_primitive};
-use rt_core::{Interval, Primitive, Ray};
+use rt_core::{Hit, Interval, Primitive, Ray};
 
 /// A number of any bits, or one of a plain size, which meets other plain numbers far more often.
 #[derive(Arbitrary, Clone, Copy, Debug)]
@@ -79,6 +79,12 @@ pub fn check_ray(shape: &dyn Primitive, ray: &Ray, within: Interval) {
     assert!(hits.windows(2).all(|pair| pair[0].t() <= pair[1].t()));
     assert_eq!(shape.hit(ray, within).map(|hit| hit.t()), hits.first().map(|hit| hit.t()));
     for hit in hits {
+        // A hit is not reported again by an interval that starts or ends with it.
+        for rest in [within.until(hit.t()), within.after(hit.t())] {
+            let again = |other: Hit| (other.part(), other.root()) == (hit.part(), hit.root());
+            let found = shape.hit(ray, rest);
+            assert!(!found.is_some_and(again), "{shape:?} {ray:?} {rest:?} {hit:?} {found:?}");
+        }
         let surface = shape.surface(ray, hit);
         assert!(surface.t.is_finite(), "{surface:?}");
         assert!((surface.normal.length() - 1.0).abs() < 1e-15, "{surface:?}");

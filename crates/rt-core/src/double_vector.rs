@@ -1,6 +1,6 @@
 //! Vectors of double-double numbers.
 
-use crate::double::Double;
+use crate::double::{Double, two_difference, two_sum};
 use crate::kernel::Product;
 use core::ops::{Add, Neg, Sub};
 use glam::DVec3;
@@ -38,6 +38,38 @@ impl DoubleVector {
             y: Double::product::<P>(v.y, s),
             z: Double::product::<P>(v.z, s),
         }
+    }
+
+    /// `self + t * d`, within a few 2^-106 of the largest of the terms.
+    #[inline(always)]
+    pub fn advanced<P: Product>(&self, d: DVec3, t: Double) -> Self {
+        let along = |x: Double, d: f64| {
+            let (p, e) = P::two_product(d, t.high);
+            let (s, f) = two_sum(x.high, p);
+            Double::sum(s, f + (x.low + (e + d * t.low)))
+        };
+        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
+    }
+
+    /// `self + t * d` for a step far smaller than `self`.
+    #[inline(always)]
+    pub fn nudged(self, d: DVec3, t: f64) -> Self {
+        let along = |x: Double, d: f64| Double::sum(x.high, x.low + d * t);
+        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
+    }
+
+    /// `|self|^2 - r^2` for a place near the sphere: within 2^-102 of `r^2`, or a unit in the last place.
+    #[inline(always)]
+    pub fn excess<P: Product>(self, r: f64) -> f64 {
+        let (xx, x_low) = P::two_product(self.x.high, self.x.high);
+        let (yy, y_low) = P::two_product(self.y.high, self.y.high);
+        let (zz, z_low) = P::two_product(self.z.high, self.z.high);
+        let (rr, r_low) = P::two_product(r, r);
+        let (s, s_low) = two_sum(xx, yy);
+        let (u, u_low) = two_difference(zz, rr);
+        let (v, v_low) = two_sum(s, u);
+        let cross = self.x.high * self.x.low + self.y.high * self.y.low + self.z.high * self.z.low;
+        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low)) + 2.0 * cross))
     }
 
     /// The product with a power of two: exact.

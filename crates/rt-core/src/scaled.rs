@@ -128,19 +128,34 @@ pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Opti
     within.admit(if t > within.min { t } else { within.min.next_up() }, part, root)
 }
 
-/// The error radius of a point that was rounded once from double-double.
+/// The error radius of a point that was rounded once from a place known to `along`.
 ///
 /// The rounding errs by at most u = 2^-53 of each coordinate, hence u `|point|` in all (and 2^-1074 where that
-/// is subnormal). The place on the ray errs, in units of `size`, by the error of the discriminant, at most
-/// 2^-99, over twice its root `half`; where the discriminant itself is below its error, by the root of that.
-#[inline]
-pub(crate) fn error_radius(point: DVec3, size: f64, half: f64) -> f64 {
-    let big = largest(point);
+/// is subnormal).
+#[inline(always)]
+pub(crate) fn error_radius(point: DVec3, along: f64) -> f64 {
     // sqrt(3) < 1.75, and an ulp of slack.
-    let rounding = big * (1.75 * exp2i(-53)) + f64::from_bits(4);
+    largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4) + along
+}
+
+/// How far a place found from a discriminant in double-double can be from the true one, in units of the shape's
+/// size.
+///
+/// It errs by the error of the discriminant, at most 2^-99, over twice its root `half`; where the discriminant
+/// itself is below its error, by the root of that.
+#[inline(always)]
+pub(crate) fn uncertainty(half: f64) -> f64 {
     let along = exp2i(-100) / half;
-    let along = if along < exp2i(-49) { along } else { exp2i(-49) };
-    rounding + size * along
+    if along < exp2i(-49) { along } else { exp2i(-49) }
+}
+
+/// Whether a direction needs no scaling: its square is moderate, and no component is one of those that
+/// [`ScaledRay::new`] leaves out.
+#[inline(always)]
+pub(crate) fn is_plain(d: DVec3) -> bool {
+    let least = largest(d) * exp2i(-160);
+    let kept = |x: f64| (x.abs() >= least) | (x == 0.0);
+    moderate(d.dot(d)) & kept(d.x) & kept(d.y) & kept(d.z)
 }
 
 /// The discriminant must exceed this many times the bound of its error before a crossing found in `f64` is taken.

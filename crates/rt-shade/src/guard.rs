@@ -163,7 +163,7 @@ fn unfit(s: &Surface) -> Option<&'static str> {
         s if !s.t.is_finite() => Some("t"),
         s if !(s.point.is_finite() && s.local.is_finite() && s.object_point.is_finite()) => Some("point"),
         s if !is_unit(s.normal) || !is_unit(s.shading_normal) => Some("normal"),
-        s if !s.uv.is_finite() => Some("uv"),
+        s if !s.uv().is_finite() => Some("uv"),
         s if !(s.error >= 0.0 && s.error.is_finite()) => Some("error radius"),
         _ => None,
     }

@@ -46,7 +46,7 @@ impl Texture {
         match self {
             Texture::Solid(color) => *color,
             Texture::Checker(checker) => checker.color(at.object_point),
-            Texture::Image(image) => image.color(at.uv, mapping),
+            Texture::Image(image) => image.color(at.uv(), mapping),
             Texture::Custom(pattern) => guard::color(object, &**pattern, at),
         }
     }

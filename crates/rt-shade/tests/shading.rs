@@ -281,7 +281,7 @@ fn textures_have_no_seam() {
             let out = DVec3::new(libm::cos(angle), 0.0, libm::sin(angle));
             let ray = Ray::new(out * 3.0 + DVec3::Y * y, -out);
             let hit = shape.hit(&ray, Interval::FORWARD).unwrap();
-            shape.surface(&ray, hit).uv
+            shape.surface(&ray, hit).uv()
         };
         let jumps = |a: f64| (uv(a - 1e-9, 0.1).x - uv(a + 1e-9, 0.1).x).abs() > 0.5;
         // u jumps by nearly a turn across the seam: found by bisection round the axis.

@@ -5,7 +5,7 @@
 //! two of them is certain unless they agree to 4 u; then they are compared exactly, as fractions. A turned box takes
 //! the ray into its own axes first and carries the absolute errors of that.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, U};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
@@ -176,43 +176,80 @@ impl Slabs {
         (entry, leave)
     }
 
-    /// The first crossing; `Err` in doubt.
+    /// Two parameters that err by 4 u of themselves can only be out of order when each is within 9 u of the other.
     #[inline(always)]
-    fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
-        let (a, b) = (self.a, self.b);
-        let near = DVec3::new(lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z));
-        let far = DVec3::new(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z));
-        let (entry, leave) = self.ends();
-        // Two parameters that err by 4 u of themselves can only be out of order when each is within 9 u of the
-        // other: `apart` needs the smaller one alone, which is finite when one of them is infinite.
-        let apart = |t: f64, s: f64| (t - s).abs() > (9.0 * U) * lesser(t.abs(), s.abs()) + 2.0 * self.slack;
-        if !(self.sound & apart(entry, leave)) {
-            return Err(());
-        }
-        if entry > leave {
-            return Ok(None);
-        }
-        let enters = entry > within.min;
-        let (t, other) = if enters {
-            (entry, greater(lesser(near.x, near.y), lesser(greater(near.x, near.y), near.z)))
-        } else {
-            (leave, lesser(greater(far.x, far.y), greater(lesser(far.x, far.y), far.z)))
+    fn doubt(&self, t: f64) -> f64 {
+        (9.0 * U) * t.abs() + 2.0 * self.slack
+    }
+
+    /// Whether it is certain whether the line enters: the smaller parameter, which is finite when the other is
+    /// infinite, tells how far apart the two have to be.
+    #[inline(always)]
+    fn decides(&self, entry: f64, leave: f64) -> bool {
+        self.sound & ((entry - leave).abs() > self.doubt(lesser(entry.abs(), leave.abs())))
+    }
+
+    /// The face of the greatest `near`, or least `far`, parameter `t`; `None` when it could be two.
+    #[inline(always)]
+    fn face(&self, t: f64, enters: bool) -> Option<u32> {
+        let (a, b, doubt) = (self.a, self.b, self.doubt(t));
+        let is_at = |a: f64, b: f64| {
+            let plane = if enters { lesser(a, b) } else { greater(a, b) };
+            ((plane - t).abs() <= doubt) as u32
         };
-        // On which side of the ends it lies has to be certain, and which face it is.
-        let clear = |t: f64, end: f64| (t - end).abs() > (4.0 * U) * t.abs() + self.slack;
-        if !(clear(entry, within.min) & clear(t, within.min) & clear(t, within.max)) {
+        let at = is_at(a.x, b.x) | is_at(a.y, b.y) << 1 | is_at(a.z, b.z) << 2;
+        let backward = (self.backward.x < 0.0) as u32
+            | ((self.backward.y < 0.0) as u32) << 1
+            | ((self.backward.z < 0.0) as u32) << 2;
+        // One bit alone: 1, 2 and 4 stand for the axes 0, 1 and 2.
+        let upper = (at & backward != 0) == enters;
+        (at & at.wrapping_sub(1) == 0).then_some((at & !1) + upper as u32)
+    }
+
+    /// The crossing at `t` when it is certain on which sides of the ends of the interval it lies, and which face it
+    /// is; `Err` in doubt.
+    #[inline(always)]
+    fn admit(&self, t: f64, enters: bool, within: Interval) -> Result<Option<Hit>, ()> {
+        let doubt = self.doubt(t);
+        if !(((t - within.min).abs() > doubt) & ((t - within.max).abs() > doubt)) {
             return Err(());
         }
         if !within.contains(t) {
             return Ok(None);
         }
-        if !apart(t, other) {
+        let face = self.face(t, enters).ok_or(())?;
+        Ok(within.admit(t, face, !enters as u32))
+    }
+
+    /// The first crossing; `Err` in doubt.
+    #[inline(always)]
+    fn first(&self, within: Interval) -> Result<Option<Hit>, ()> {
+        let (entry, leave) = self.ends();
+        if !self.decides(entry, leave) {
             return Err(());
         }
-        let planes = if enters { near } else { far };
-        let axis = (t == planes.y) as usize + 2 * (t == planes.z) as usize;
-        let backward = [self.backward.x < 0.0, self.backward.y < 0.0, self.backward.z < 0.0][axis.min(2)];
-        Ok(within.admit(t, 2 * axis as u32 + (backward == enters) as u32, !enters as u32))
+        if entry > leave {
+            return Ok(None);
+        }
+        if entry > within.min {
+            self.admit(entry, true, within)
+        } else if within.min - entry > self.doubt(entry) {
+            self.admit(leave, false, within)
+        } else {
+            Err(())
+        }
+    }
+
+    /// Both crossings; `Err` in doubt about one of them.
+    fn both(&self, within: Interval) -> Result<[Option<Hit>; 2], ()> {
+        let (entry, leave) = self.ends();
+        if !self.decides(entry, leave) {
+            return Err(());
+        }
+        if entry > leave {
+            return Ok([None, None]);
+        }
+        Ok([self.admit(entry, true, within)?, self.admit(leave, false, within)?])
     }
 }
 
@@ -333,19 +370,86 @@ fn turned_slab<P: Product>(
     (low.rounded(), high.rounded(), along.rounded())
 }
 
-/// A point of a face in the box's own axes, without the coordinate across it.
-struct Along<'a> {
-    at: &'a Meeting,
-    axes: &'a [DVec3; 3],
+/// A face of a box, by the index of its part.
+struct Face<'a> {
+    cuboid: &'a Cuboid,
+    part: u32,
+    /// The axis across it, and whether it is the upper one.
+    k: usize,
+    upper: bool,
 }
 
-impl Task for Along<'_> {
-    type Output = DVec3;
+impl Face<'_> {
     #[inline(always)]
-    fn run<P: Product>(self) -> DVec3 {
-        let [x, y, z] = self.at.local;
-        let dot = |v: DVec3| (x.scale::<P>(v.x) + y.scale::<P>(v.y) + z.scale::<P>(v.z)).to_f64();
-        DVec3::from_array(self.axes.map(dot)) * exp2i(self.at.power)
+    fn new(cuboid: &Cuboid, part: u32) -> Face<'_> {
+        let part = part.min(5);
+        Face { cuboid, part, k: (part / 2) as usize, upper: part % 2 == 1 }
+    }
+
+    #[inline(always)]
+    fn axis(&self) -> DVec3 {
+        self.cuboid.turn.as_ref().map_or(&WORLD, |turn| &turn.axes)[self.k]
+    }
+
+    #[inline(always)]
+    fn normal(&self) -> DVec3 {
+        if self.upper { self.axis() } else { -self.axis() }
+    }
+}
+
+impl Piece for Face<'_> {
+    /// Along the world's axes the plane of a face goes through a coordinate given; turned, it lies `size` away.
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        let Cuboid { min, max, turn } = self.cuboid;
+        let k = self.k;
+        match turn {
+            None => ExactPlane {
+                anchor: if self.upper { min.with_axis(k, coordinate(*max, k)) } else { *min },
+                normal: flat::doubles(WORLD[k]),
+                axis: Some(k as u8),
+                offset: 0.0,
+            },
+            Some(turn) => ExactPlane {
+                anchor: turn.corner,
+                normal: flat::doubles(turn.axes[k]),
+                axis: None,
+                offset: if self.upper { coordinate(*max, k) } else { 0.0 },
+            },
+        }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        flat::expansions(self.axis())
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        let Cuboid { min, max, turn } = self.cuboid;
+        let size = *max - *min;
+        let across = if self.upper { coordinate(size, self.k) } else { 0.0 };
+        // The hit is on the face; what double-double leaves beside it is noise.
+        let on_face = |p: DVec3| flat::clamped(p.with_axis(self.k, across), DVec3::ZERO, size);
+        let (point, local, object_point) = match turn {
+            None => {
+                let local = on_face(at.local());
+                (flat::clamped(at.point(self.plane().anchor), *min, *max), local, local)
+            }
+            Some(turn) => {
+                let along = |axis: DVec3| flat::dot::<P>(&at.local, &flat::doubles(axis), 0.0).0.to_f64();
+                let [x, y, z] = turn.axes;
+                let own = DVec3::new(along(x), along(y), along(z)) * exp2i(at.power);
+                (at.point(turn.corner), at.local(), on_face(own))
+            }
+        };
+        Surface::new(at.t, point, local, self.normal(), at.error_radius(point))
+            .with_object_point(object_point)
+            .with_uv(face_uv(self.part, object_point, size))
+    }
+
+    fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
+        let Cuboid { min, max, .. } = self.cuboid;
+        Surface::new(hit.t(), self.cuboid.corner(), DVec3::ZERO, self.normal(), (*max - *min).length())
     }
 }
 
@@ -360,50 +464,16 @@ impl Primitive for Cuboid {
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        let Some([near, far]) = self.span_exactly(ray) else { return };
-        if let Some(hit) = within.admit(near.t, near.face, 0) {
-            each(hit);
-        }
-        if let Some(hit) = within.admit(far.t, far.face, 1) {
-            each(hit);
-        }
+        let hits = self.slabs(ray).both(within).unwrap_or_else(|()| {
+            self.span_exactly(ray).map_or([None, None], |[near, far]| {
+                [within.admit(near.t, near.face, 0), within.admit(far.t, far.face, 1)]
+            })
+        });
+        hits.into_iter().flatten().for_each(each);
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let (axes, size, corner) = (self.axes(), self.size(), self.corner());
-        let face = hit.part().min(5);
-        let (k, upper) = ((face / 2) as usize, face % 2 == 1);
-        let normal = if upper { axes[k] } else { -axes[k] };
-        // Along the world's axes the plane of a face goes through a coordinate given; turned, it lies `size` away.
-        let (anchor, offset) = match (&self.turn, upper) {
-            (_, false) => (corner, 0.0),
-            (None, true) => (corner.with_axis(k, self.max[k]), 0.0),
-            (Some(_), true) => (corner, size[k]),
-        };
-        let plane = ExactPlane { anchor, normal: flat::doubles(axes[k]), offset };
-        let Some(mut at) = flat::meet(&plane, ray, || flat::expansions(axes[k])) else {
-            // Only for a ray that this box gave no hit for.
-            return Surface::new(hit.t(), corner, DVec3::ZERO, normal, size.length());
-        };
-        if self.turn.is_none() {
-            at.local[k] = Double::ZERO;
-        }
-        let mut point = at.point(anchor);
-        let across = if upper { size[k] } else { 0.0 };
-        let mut local = at.local();
-        if self.turn.is_none() {
-            // The hit is on the face; what double-double leaves beside it is noise.
-            local = local.with_axis(k, across).clamp(DVec3::ZERO, size);
-            point = point.clamp(self.min, self.max);
-        }
-        let object_point = match &self.turn {
-            None => local,
-            Some(turn) => run(Along { at: &at, axes: &turn.axes }).with_axis(k, across),
-        };
-        let object_point = object_point.clamp(DVec3::ZERO, size);
-        Surface::new(at.t, point, local, normal, at.error_radius(point))
-            .with_object_point(object_point)
-            .with_uv(face_uv(face, object_point, size))
+        flat::surface(&Face::new(self, hit.part()), ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -477,9 +547,20 @@ trait WithAxis {
 }
 
 impl WithAxis for DVec3 {
+    #[inline(always)]
     fn with_axis(self, k: usize, value: f64) -> Self {
-        let keep = self.to_array();
-        DVec3::from_array([0, 1, 2].map(|i| if i == k { value } else { keep[i] }))
+        let pick = |i: usize, keep: f64| if i == k { value } else { keep };
+        DVec3::new(pick(0, self.x), pick(1, self.y), pick(2, self.z))
+    }
+}
+
+/// One coordinate.
+#[inline(always)]
+fn coordinate(v: DVec3, k: usize) -> f64 {
+    match k {
+        0 => v.x,
+        1 => v.y,
+        _ => v.z,
     }
 }
 

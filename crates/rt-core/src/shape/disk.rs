@@ -1,7 +1,8 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, Rough, U};
 use crate::double::Double;
+use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::sqrt;
 use crate::scaled::{checked_length, checked_point, times_power};
@@ -21,6 +22,10 @@ pub struct Disk {
     radius: f64,
     normal: DVec3,
     axes: [DVec3; 2],
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
+    /// How far it reaches from its centre along each axis, rounded up.
+    reach: DVec3,
 }
 
 impl Disk {
@@ -36,7 +41,18 @@ impl Disk {
         let radius = checked_length("disk radius", radius)?;
         let (first, second) = flat::plane_axes(normal);
         let unit = flat::unit(flat::doubles(normal));
-        Ok(Disk { center, scaled_normal: normal, radius, normal: unit, axes: [first, second] })
+        // The reach is radius sqrt(1 - n_i^2); sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates
+        // round once more.
+        let reach = |a: f64, b: f64| radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
+        Ok(Disk {
+            center,
+            scaled_normal: normal,
+            radius,
+            normal: unit,
+            axes: [first, second],
+            axis: flat::world_axis(normal),
+            reach: DVec3::new(reach(unit.y, unit.z), reach(unit.z, unit.x), reach(unit.x, unit.y)),
+        })
     }
 
     /// The centre: the anchor of local and texture coordinates.
@@ -67,22 +83,6 @@ impl Disk {
         Disk::new(by.point(self.center), by.direction(self.scaled_normal), self.radius * by.scale())
     }
 
-    /// How far it reaches from its centre along each axis, rounded up: `radius sqrt(1 - n_i^2)`.
-    fn reach(&self) -> DVec3 {
-        let n = self.normal;
-        // sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates round once more.
-        let reach = |a: f64, b: f64| self.radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
-        DVec3::new(reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y))
-    }
-
-    fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let plane =
-            ExactPlane { anchor: self.center, normal: flat::doubles(self.scaled_normal), offset: 0.0 };
-        let mut at = flat::meet(&plane, ray, || flat::expansions(self.scaled_normal))?;
-        flat::settle(&mut at, self.scaled_normal);
-        Some(at)
-    }
-
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
@@ -92,7 +92,7 @@ impl Disk {
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
-        let at = self.meet(ray)?;
+        let at = flat::meet(self, ray)?;
         if run(InDisk { at: &at, radius: self.radius }) { within.admit(at.t, 0, 0) } else { None }
     }
 }
@@ -122,6 +122,37 @@ impl Task for InDisk<'_> {
     }
 }
 
+impl Piece for Disk {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane {
+            anchor: self.center,
+            normal: flat::doubles(self.scaled_normal),
+            axis: self.axis,
+            offset: 0.0,
+        }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        flat::expansions(self.scaled_normal)
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        // The hit is inside; what double-double leaves beside the rim is noise.
+        let point = at.point(self.center);
+        let point = flat::clamped(point, self.center - self.reach, self.center + self.reach);
+        let uv = at.along::<P>(&self.axes, self.axis);
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
+            .with_object_point(uv.extend(0.0))
+            .with_uv(uv)
+    }
+
+    fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), self.center, DVec3::ZERO, self.normal, self.radius)
+    }
+}
+
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
@@ -148,21 +179,11 @@ impl Primitive for Disk {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let Some(at) = self.meet(ray) else {
-            // Only for a ray that this disk gave no hit for.
-            return Surface::new(hit.t(), self.center, DVec3::ZERO, self.normal, self.radius);
-        };
-        // The hit is inside; what double-double leaves beside the rim is noise.
-        let half = self.reach();
-        let point = at.point(self.center).clamp(self.center - half, self.center + half);
-        let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
-            .with_object_point(uv.extend(0.0))
-            .with_uv(uv)
+        flat::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {
-        let half = self.reach();
+        let half = self.reach;
         Some(flat::outward(self.center, -half, half))
     }
 

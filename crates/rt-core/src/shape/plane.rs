@@ -4,7 +4,9 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, ExactPlane, Meeting, Rough};
+use super::flat::{self, ExactPlane, Meeting, Piece, Rough};
+use crate::expansion::Expansion;
+use crate::kernel::Product;
 use crate::scaled::checked_point;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
@@ -23,6 +25,8 @@ pub struct Plane {
     scaled_normal: DVec3,
     normal: DVec3,
     axes: [DVec3; 2],
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
 }
 
 impl Plane {
@@ -39,6 +43,7 @@ impl Plane {
             scaled_normal: normal,
             normal: flat::unit(flat::doubles(normal)),
             axes: [first, second],
+            axis: flat::world_axis(normal),
         })
     }
 
@@ -65,14 +70,6 @@ impl Plane {
         Plane::new(by.point(self.point), by.direction(self.scaled_normal))
     }
 
-    fn exact(&self) -> ExactPlane {
-        ExactPlane { anchor: self.point, normal: flat::doubles(self.scaled_normal), offset: 0.0 }
-    }
-
-    fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        flat::meet(&self.exact(), ray, || flat::expansions(self.scaled_normal))
-    }
-
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
@@ -82,7 +79,36 @@ impl Plane {
         if !ray.is_valid() || rough.ends(within) {
             return None;
         }
-        within.admit(self.meet(ray)?.t, 0, 0)
+        within.admit(flat::meet(self, ray)?.t, 0, 0)
+    }
+}
+
+impl Piece for Plane {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane {
+            anchor: self.point,
+            normal: flat::doubles(self.scaled_normal),
+            axis: self.axis,
+            offset: 0.0,
+        }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        flat::expansions(self.scaled_normal)
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        let point = at.point(self.point);
+        let uv = at.along::<P>(&self.axes, self.axis);
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
+            .with_object_point(uv.extend(0.0))
+            .with_uv(uv)
+    }
+
+    fn parallel(&self, ray: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0)
     }
 }
 
@@ -100,16 +126,7 @@ impl Primitive for Plane {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let Some(mut at) = self.meet(ray) else {
-            // Only for a ray that this plane gave no hit for.
-            return Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0);
-        };
-        flat::settle(&mut at, self.scaled_normal);
-        let point = at.point(self.point);
-        let uv = at.along(self.axes[0], self.axes[1]);
-        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
-            .with_object_point(uv.extend(0.0))
-            .with_uv(uv)
+        flat::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -6,8 +6,8 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Rough, U};
-use crate::double::Double;
+use super::flat::{self, ExactPlane, LEAST_CERTAIN, Meeting, Piece, Rough, U};
+use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
@@ -35,6 +35,10 @@ pub struct Triangle {
     /// The largest coordinate of the edges, in size.
     reach: f64,
     normal: DVec3,
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
+    /// The power of two between `scaled_normal` and the product of the edges when `reach` is in `[1, 2)`.
+    normal_scale: f64,
     smooth: Option<Arc<[DVec3; 3]>>,
 }
 
@@ -49,7 +53,8 @@ impl Triangle {
         let b = checked_point("triangle corner", b.into())?;
         let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
-        let (exact, area_power) = exact_normal(a, b, c);
+        let (exact, edge_power, normal_power) = exact_normal(a, b, c);
+        let area_power = 2 * edge_power + normal_power;
         let normal = exact.map(|n| n.rounded());
         if normal.iter().all(|n| n.high == 0.0) {
             return Err(Error::Degenerate { vertices: [a, b, c] });
@@ -63,6 +68,8 @@ impl Triangle {
             area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
             reach,
             normal: flat::unit(normal),
+            axis: flat::world_axis(DVec3::from_array(normal.map(|n| n.high))),
+            normal_scale: times_power(1.0, normal_power),
             smooth: None,
         })
     }
@@ -112,15 +119,6 @@ impl Triangle {
         }
     }
 
-    fn meet(&self, ray: &Ray) -> Option<Meeting> {
-        let (high, low) = (self.scaled_normal.to_array(), self.normal_rest.to_array());
-        let normal = [0, 1, 2].map(|i| Double { high: high[i], low: low[i] });
-        let plane = ExactPlane { anchor: self.a, normal, offset: 0.0 };
-        let mut at = flat::meet(&plane, ray, || exact_normal(self.a, self.b, self.c).0)?;
-        flat::settle(&mut at, self.scaled_normal);
-        Some(at)
-    }
-
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
@@ -135,13 +133,13 @@ impl Triangle {
         if least < 0 && most > 0 {
             return None;
         }
-        within.admit(self.meet(ray)?.t, 0, 0)
+        within.admit(flat::meet(self, ray)?.t, 0, 0)
     }
 }
 
-/// `(b - a) x (c - a)` without rounding, in units of the returned power of two, in which the largest component is in
-/// `[1, 2)`.
-fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
+/// `(b - a) x (c - a)` without rounding, its largest component in `[1, 2)`: in units of `4^p 2^q`, with `2^p` the unit
+/// in which the largest coordinate of the edges is in `[1, 2)`; and `p`, `q`.
+fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32, i32) {
     struct Cross([Double; 3], [Double; 3]);
     impl Task for Cross {
         type Output = [Expansion; 3];
@@ -159,7 +157,7 @@ fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32) {
     let rough = DVec3::new(normal[0].rounded().high, normal[1].rounded().high, normal[2].rounded().high);
     let normal_power = flat::power_of(rough);
     normal.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
-    (normal, 2 * power + normal_power)
+    (normal, power, normal_power)
 }
 
 /// The exact signs of the edge functions opposite the corners.
@@ -190,37 +188,69 @@ impl Task for EdgeSigns<'_> {
     }
 }
 
-/// The weights of the second and third corner at a point of the plane.
-struct Weights<'a> {
-    at: &'a Meeting,
-    triangle: &'a Triangle,
+impl Piece for Triangle {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane { anchor: self.a, normal: self.normal_sum(), axis: self.axis, offset: 0.0 }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        exact_normal(self.a, self.b, self.c).0
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        // The hit is inside; what double-double leaves beside the corners is noise.
+        let Triangle { a, b, c, .. } = *self;
+        let point = flat::clamped(at.point(a), a.min(b).min(c), a.max(b).max(c));
+        let uv = self.weights::<P>(at);
+        let surface = Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point)).with_uv(uv);
+        match self.smooth.as_deref() {
+            Some([a, b, c]) => {
+                let normal = *a * (1.0 - uv.x - uv.y) + *b * uv.x + *c * uv.y;
+                // Opposite corner normals may cancel: the geometric normal is all there is then.
+                surface.with_shading_normal(normal.try_normalize().unwrap_or(self.normal))
+            }
+            None => surface,
+        }
+    }
+
+    fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), self.a, DVec3::ZERO, self.normal, self.reach)
+    }
 }
 
-impl Task for Weights<'_> {
-    type Output = DVec2;
+impl Triangle {
     #[inline(always)]
-    fn run<P: Product>(self) -> DVec2 {
+    fn normal_sum(&self) -> [Double; 3] {
+        let (high, low) = (self.scaled_normal.to_array(), self.normal_rest.to_array());
+        [0, 1, 2].map(|i| Double { high: high[i], low: low[i] })
+    }
+
+    /// The weights of the second and third corner at a point of the plane.
+    #[inline(always)]
+    fn weights<P: Product>(&self, at: &Meeting) -> DVec2 {
         // In the two coordinates in which the triangle is largest: the plane point l = beta (b - a) + gamma (c - a)
         // gives beta = (l x e2)_k / n_k and gamma = (e1 x l)_k / n_k.
-        let Triangle { a, b, c, scaled_normal: normal, .. } = self.triangle;
-        let k = flat::dominant(*normal);
+        let k = flat::dominant(self.scaled_normal);
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let power = flat::power_of(DVec3::splat(self.triangle.reach));
-        let (a, b, c) = (a.to_array(), b.to_array(), c.to_array());
-        let scale = exp2i(-power);
-        let e1 = |i: usize| Double::difference(b[i], a[i]).scale_exact(scale);
-        let e2 = |i: usize| Double::difference(c[i], a[i]).scale_exact(scale);
-        let shift = self.at.power - power;
-        let l = |i: usize| {
-            let x: Double = self.at.local[i];
-            Double { high: times_power(x.high, shift), low: times_power(x.low, shift) }
+        let power = flat::power_of(DVec3::splat(self.reach));
+        let (a, b, c) = (self.a.to_array(), self.b.to_array(), self.c.to_array());
+        let unit = exp2i(-power);
+        let edge = |to: [f64; 3]| [i, j].map(|i| Double::difference(to[i], a[i]).scale_exact(unit));
+        // In two steps: the unit of a place met from afar may be more than 2^1023 times as large.
+        let shift = (at.power - power).clamp(-2000, 2000);
+        let (first, second) = (exp2i(shift / 2), exp2i(shift - shift / 2));
+        let l = [i, j].map(|i| at.local[i].scale_exact(first).scale_exact(second));
+        let area = self.normal_sum()[k].scale_exact(self.normal_scale);
+        let inverse = 1.0 / area.high;
+        let weight = |p: [Double; 2], q: [Double; 2]| {
+            let (x, y) = (p[0].mul::<P>(q[1]), p[1].mul::<P>(q[0]));
+            let (s, e) = two_difference(x.high, y.high);
+            let (high, low) = fast_two_sum(s, e + (x.low - y.low));
+            flat::quotient::<P>(Double { high, low }, area, inverse).high.clamp(0.0, 1.0)
         };
-        let across = |p: [Double; 2], q: [Double; 2]| p[0].mul::<P>(q[1]) - p[1].mul::<P>(q[0]);
-        let (e1, e2, l) = ([e1(i), e1(j)], [e2(i), e2(j)], [l(i), l(j)]);
-        let area = across(e1, e2);
-        let beta = across(l, e2).div::<P>(area).to_f64();
-        let gamma = across(e1, l).div::<P>(area).to_f64();
-        DVec2::new(beta.clamp(0.0, 1.0), gamma.clamp(0.0, 1.0))
+        DVec2::new(weight(l, edge(c)), weight(edge(b), l))
     }
 }
 
@@ -265,23 +295,7 @@ impl Primitive for Triangle {
     }
 
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let Some(at) = self.meet(ray) else {
-            // Only for a ray that this triangle gave no hit for.
-            return Surface::new(hit.t(), self.a, DVec3::ZERO, self.normal, self.reach);
-        };
-        // The hit is inside; what double-double leaves beside the corners is noise.
-        let [a, b, c] = self.corners();
-        let point = at.point(a).clamp(a.min(b).min(c), a.max(b).max(c));
-        let uv = run(Weights { at: &at, triangle: self });
-        let surface = Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point)).with_uv(uv);
-        match self.smooth.as_deref() {
-            Some([a, b, c]) => {
-                let normal = *a * (1.0 - uv.x - uv.y) + *b * uv.x + *c * uv.y;
-                // Opposite corner normals may cancel: the geometric normal is all there is then.
-                surface.with_shading_normal(normal.try_normalize().unwrap_or(self.normal))
-            }
-            None => surface,
-        }
+        flat::surface(self, ray, hit)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -333,7 +347,7 @@ mod tests {
         let smooth = triangle.with_normals([0.0, 0.0, 3.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
         let ray = Ray::new([1.0, 1.0, 1.0], [0.0, 0.0, -1.0]);
         let surface = smooth.surface(&ray, smooth.hit(&ray, Interval::FORWARD).unwrap());
-        assert_eq!(surface.uv, DVec2::new(0.5, 0.25));
+        assert_eq!(surface.uv(), DVec2::new(0.5, 0.25));
         assert_eq!(surface.normal, DVec3::Z);
         let half = 0.5_f64.sqrt();
         assert!((surface.shading_normal - DVec3::new(0.0, half, half)).length() < 1e-15);

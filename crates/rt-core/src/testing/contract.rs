@@ -77,8 +77,8 @@ impl core::error::Error for Failure {}
 /// Casts hard rays at a shape and checks its contract:
 ///
 /// - no argument makes a method panic, and a ray that is not [valid](Ray::is_valid) hits nothing;
-/// - every hit lies inside the interval; ending the interval before a hit removes it, so does starting after it;
-///   splitting it anywhere does not change the first hit;
+/// - every hit lies inside the interval; ending the interval at a hit or before it removes it, so does starting there
+///   or after it; splitting it anywhere does not change the first hit;
 /// - the crossings ascend and begin with the first hit; a closed shape has an even number on a line;
 /// - the same question has the same answer, bit for bit; a direction twice as long gives half the parameter exactly;
 /// - the point is on the ray to within the error radius, inside the [bounds](Primitive::bounds), and as far from
@@ -228,6 +228,21 @@ impl Check<'_> {
         if let Some(next) = shape.hit(ray, after).filter(|next| next.t() <= t + doubt) {
             return fail("an interval that starts after a hit does not have it", after, format!("{next:?}"));
         }
+        // The end itself is not in doubt: whatever the digits behind it, a reported hit is not reported again.
+        let within = Interval::FORWARD;
+        if let Some(again) = shape.hit(ray, within.until(t)) {
+            return fail(
+                "an interval that ends at the first hit has none",
+                within.until(t),
+                format!("{again:?}"),
+            );
+        }
+        let is_same =
+            |next: &Hit| (next.part(), next.root()) == (hit.part(), hit.root()) && next.t() <= t + doubt;
+        if let Some(again) = shape.hit(ray, within.after(t)).filter(is_same) {
+            let found = format!("{hit:?} and {again:?}");
+            return fail("an interval that starts at a hit does not have it", within.after(t), found);
+        }
         let middle = t * share;
         let parts = [Interval::new(0.0, middle), Interval::new(middle, f64::INFINITY)];
         let split = shape.hit(ray, parts[0]).or_else(|| shape.hit(ray, parts[1]));
@@ -250,7 +265,7 @@ impl Check<'_> {
     fn record(&self, ray: &Ray, hit: Hit, surface: &Surface) -> Result<(), Failure> {
         let fail = |promise, found| Err(Failure { promise, ray: *ray, within: Interval::FORWARD, found });
         let Surface { point, local, normal, shading_normal, error, t, .. } = *surface;
-        let numbers = [point, local, normal, shading_normal, surface.object_point, surface.uv.extend(0.0)];
+        let numbers = [point, local, normal, shading_normal, surface.object_point, surface.uv().extend(0.0)];
         if !numbers.iter().all(|v| v.is_finite()) || error < 0.0 || !error.is_finite() || !t.is_finite() {
             return fail("a surface record is finite", format!("{surface:?}"));
         }

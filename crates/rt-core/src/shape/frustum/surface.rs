@@ -4,10 +4,10 @@ use super::line::{FindLine, quotient};
 use super::{BASE, Frustum, TOP};
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
-use crate::frame::turns;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{ScaledRay, error_radius};
+use crate::scaled::{ScaledRay, error_radius, uncertainty};
+use crate::surface::Coordinates;
 use crate::{Hit, Ray, Surface};
 use glam::{DVec2, DVec3};
 
@@ -33,9 +33,9 @@ impl Frustum {
             point,
             local.high(),
             found.normal,
-            error_radius(point, scale, found.half),
+            error_radius(point, scale * uncertainty(found.half)),
         )
-        .with_uv(DVec2::new(turns(x, y), v))
+        .with_coordinates(Coordinates::Side(DVec2::new(x, y), v))
         .with_object_point(DVec3::new(x, y, found.z) * scale)
     }
 }

@@ -4,10 +4,10 @@ use super::Torus;
 use super::exact::{self, Crossings};
 use super::line::Line;
 use crate::double::Double;
-use crate::frame::turns;
 use crate::kernel::{Product, Task};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledRay, largest, times_power};
+use crate::surface::Coordinates;
 use crate::{Hit, Surface};
 use glam::{DVec2, DVec3};
 
@@ -157,14 +157,14 @@ impl Torus {
         // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
         // towards the axis.
         let uv = if inner {
-            DVec2::new(turns(-own.x, -own.y), turns(-out.high, own.z))
+            Coordinates::Ring(DVec2::new(-own.x, -own.y), DVec2::new(-out.high, own.z))
         } else {
-            DVec2::new(turns(own.x, own.y), turns(out.high, own.z))
+            Coordinates::Ring(DVec2::new(own.x, own.y), DVec2::new(out.high, own.z))
         };
         let t = ray.unscale(parameter).to_f64();
         let uncertainty = exact::uncertainty(self, line, x.high);
         let error = self.error_radius(point, uncertainty, line.slope_at(x.high));
-        Surface::new(t, point, world.high(), normal, error).with_uv(uv).with_object_point(own * unit)
+        Surface::new(t, point, world.high(), normal, error).with_coordinates(uv).with_object_point(own * unit)
     }
 
     /// How far `point` can be from the true crossing. The rounding errs by at most 2^-53 of each coordinate, hence

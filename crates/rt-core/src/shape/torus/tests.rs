@@ -114,11 +114,11 @@ fn coordinates_on_the_tube() {
         let ray = Ray::new(origin, direction);
         torus.surface(&ray, torus.hit(&ray, Interval::FORWARD).unwrap())
     };
-    assert_eq!(at([9.0, 0.0, 0.0], [-1.0, 0.0, 0.0]).uv.to_array(), [0.0, 0.0]);
-    assert_eq!(at([3.0, 0.0, 9.0], [0.0, 0.0, -1.0]).uv.to_array(), [0.0, 0.25]);
-    assert_eq!(at([1.0, -9.0, 0.0], [0.0, 1.0, 0.0]).uv.to_array(), [0.75, 0.0]);
-    assert_eq!(at([1.0, 2.0, -9.0], [0.0, 0.0, 1.0]).uv.to_array(), [0.25, 0.75]);
-    assert_eq!(at([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]).uv.to_array(), [0.5, 0.5]);
+    assert_eq!(at([9.0, 0.0, 0.0], [-1.0, 0.0, 0.0]).uv().to_array(), [0.0, 0.0]);
+    assert_eq!(at([3.0, 0.0, 9.0], [0.0, 0.0, -1.0]).uv().to_array(), [0.0, 0.25]);
+    assert_eq!(at([1.0, -9.0, 0.0], [0.0, 1.0, 0.0]).uv().to_array(), [0.75, 0.0]);
+    assert_eq!(at([1.0, 2.0, -9.0], [0.0, 0.0, 1.0]).uv().to_array(), [0.25, 0.75]);
+    assert_eq!(at([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]).uv().to_array(), [0.5, 0.5]);
     let surface = at([3.0, 0.0, 9.0], [0.0, 0.0, -1.0]);
     assert_eq!(surface.local, DVec3::new(2.0, 0.0, 0.5));
     assert_eq!(surface.object_point, DVec3::new(2.0, 0.0, 0.5));
@@ -159,7 +159,7 @@ fn its_own_axes_turn_with_it() {
     let ray = Ray::new([0.0, 99.0, 0.0], [0.0, -1.0, 0.0]);
     let surface = turned.surface(&ray, turned.hit(&ray, Interval::FORWARD).unwrap());
     assert_eq!(surface.object_point, DVec3::new(5.0, 0.0, 0.0));
-    assert_eq!(surface.uv.to_array(), [0.0, 0.0]);
+    assert_eq!(surface.uv().to_array(), [0.0, 0.0]);
 }
 
 /// The one side is as far into the pair of neighbouring crossings as the other.
@@ -200,8 +200,8 @@ proptest! {
             prop_assert!(off(&torus, s.local) <= 8.0 * f64::EPSILON * size);
             prop_assert!((s.normal.length() - 1.0).abs() <= 2.0 * f64::EPSILON);
             prop_assert!(bounds.contains(s.point));
-            prop_assert!((0.0..1.0).contains(&s.uv.x) && (0.0..1.0).contains(&s.uv.y));
-            let (p, n) = place(&torus, s.uv.x, s.uv.y);
+            prop_assert!((0.0..1.0).contains(&s.uv().x) && (0.0..1.0).contains(&s.uv().y));
+            let (p, n) = place(&torus, s.uv().x, s.uv().y);
             prop_assert!((p - s.local).length() <= 32.0 * f64::EPSILON * size);
             // Near the axis the angle about it, and with it the normal, is only as good as the point.
             if torus.minor < torus.major {
@@ -227,7 +227,7 @@ proptest! {
             prop_assert_eq!(p.t * exp2i(k - j), q.t);
             prop_assert_eq!(p.point * scale, q.point);
             prop_assert_eq!(p.local * scale, q.local);
-            prop_assert_eq!((p.normal, p.uv), (q.normal, q.uv));
+            prop_assert_eq!((p.normal, p.uv()), (q.normal, q.uv()));
         }
     }
 

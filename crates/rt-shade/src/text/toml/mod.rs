@@ -44,7 +44,7 @@ const OPTIONAL: [&str; 7] = ["version", "image", "render", "light", "material", 
 /// assert_eq!(loaded.scene.objects().len(), 1);
 ///
 /// let wrong = load_toml("ball.toml", &text.replace("radius", "raduis"), &NoPictures).unwrap_err();
-/// let message = "ball.toml:11:39: error: unknown key `raduis` in sphere: did you mean `radius`?";
+/// let message = "ball.toml:11:38: error: unknown key `raduis` in sphere: did you mean `radius`?";
 /// assert!(wrong.to_string().starts_with(message));
 /// # Ok::<(), rt_shade::text::Diagnostics>(())
 /// ```
