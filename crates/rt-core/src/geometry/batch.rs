@@ -163,7 +163,7 @@ fn block<R: Request, L: Lanes>(
         }
     }
     let mut numbers = alone[..alone_count].iter().map(|&number| usize::from(number));
-    if geometry.tree.bytes() <= CACHE {
+    if geometry.tree.roots != 1 || geometry.tree.bytes() <= CACHE {
         for number in numbers {
             answers[number] = R::one(lanes, geometry, &rays[number], within[number]);
         }

@@ -13,6 +13,8 @@ const MOST_DEPTH_OF_HEURISTIC: usize = 40;
 /// No path from the root has more nodes: 25 halvings of [`Child::CAPACITY`] shapes, and room.
 pub(super) const MOST_DEPTH: usize = MOST_DEPTH_OF_HEURISTIC + 32;
 const BINS: usize = 16;
+/// Up to this many shapes, testing all boxes is faster than going down a tree (measured: docs/performance.md).
+pub(super) const MOST_WITHOUT_TREE: usize = 32;
 
 /// A shape to be put into the tree: its box in kernel coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +97,13 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     if items.is_empty() {
         return Tree::default();
     }
+    let size = |item: &Item| (0..3).map(|k| f64::from(item.max[k] - item.min[k])).sum::<f64>() / 3.0;
+    let box_size = items.iter().map(size).sum::<f64>() / items.len() as f64;
+    if items.len() <= MOST_WITHOUT_TREE {
+        let mut nodes = rows(items);
+        number_by_kind(items, &mut nodes);
+        return Tree { roots: nodes.len(), nodes, box_size };
+    }
     // Nodes hold about four shapes each; untouched room costs nothing but addresses.
     let mut nodes = vec_on_large_pages(items.len() / 3 + 1);
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
@@ -103,10 +112,20 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     // Shrinking in place would copy them to pages of common size.
     let mut exact = vec_on_large_pages(nodes.len());
     exact.append(&mut nodes);
-    let nodes = exact;
-    let size = |item: &Item| (0..3).map(|k| f64::from(item.max[k] - item.min[k])).sum::<f64>() / 3.0;
-    let box_size = items.iter().map(size).sum::<f64>() / items.len() as f64;
-    Tree { nodes, box_size }
+    Tree { nodes: exact, roots: 1, box_size }
+}
+
+/// All items side by side, eight a node.
+fn rows(items: &[Item]) -> Vec<Node> {
+    let row = |(row, items): (usize, &[Item])| {
+        let mut node = Node::EMPTY;
+        for (lane, item) in items.iter().enumerate() {
+            node.boxes.set(lane, item.min, item.max);
+            node.children[lane] = Child::leaf(Run { kind: item.kind, first: 8 * row + lane, count: 1 });
+        }
+        node
+    };
+    items.chunks(8).enumerate().map(row).collect()
 }
 
 /// Adds the node of `whole`, whose items are `items`, which begin at `offset` among all.

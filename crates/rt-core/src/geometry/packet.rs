@@ -109,12 +109,13 @@ impl<Q: Query> Packet<'_, Q> {
         let mut end = greatest(&depths);
 
         let mut stack = Stack::<STACK>::default();
-        let mut index = 0;
+        let mut indices = 0..geometry.tree.roots;
         'node: loop {
-            if let Some(node) = geometry.tree.nodes.get(index) {
+            let base = stack.len();
+            for index in indices {
+                let Some(node) = geometry.tree.nodes.get(index) else { continue };
                 let (mut mask, at) = beam.test(lanes, &node.boxes, lanes.splat(end));
                 let at = lanes.store(at);
-                let base = stack.len();
                 while mask != 0 {
                     let i = mask.trailing_zeros() as usize & 7;
                     mask &= mask - 1;
@@ -130,7 +131,7 @@ impl<Q: Query> Packet<'_, Q> {
                     continue;
                 }
                 if let Some(next) = child.as_node() {
-                    index = next;
+                    indices = next..next + 1;
                     continue 'node;
                 }
                 let (node, lane) = child.as_place();

@@ -17,8 +17,10 @@ pub(super) trait Query {
 /// Which hit is nearest, and whether another object's is too close to be sure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
+    /// What every shape is asked about, also when nearer hits are known: the last bits of a parameter may depend on an
+    /// interval that ends beside it, and must not depend on the order of visits.
     within: Interval,
-    end: f64,
+    limit: f64,
     window: Window,
     skip: Option<u32>,
     best: Option<Found>,
@@ -37,7 +39,7 @@ pub(super) enum Ruling {
 impl Nearest {
     #[inline(always)]
     pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
-        Nearest { within, end: within.max, window, skip, best: None, runner_up: f64::INFINITY }
+        Nearest { within, limit: within.max, window, skip, best: None, runner_up: f64::INFINITY }
     }
 
     /// Takes a hit into account.
@@ -51,7 +53,7 @@ impl Nearest {
                     self.runner_up = self.runner_up.min(before.hit.t());
                 }
                 self.best = Some(Found { object, hit });
-                self.within.max = self.window.limit(t).min(self.end);
+                self.limit = self.window.limit(t).min(self.within.max);
             }
         }
     }
@@ -60,7 +62,7 @@ impl Nearest {
     #[inline(always)]
     pub fn ruling(&self) -> Ruling {
         match self.best {
-            Some(_) if self.runner_up < self.within.max => Ruling::Contested(self.within),
+            Some(_) if self.runner_up < self.limit => Ruling::Contested(self.within.until(self.limit)),
             best => Ruling::Clear(best),
         }
     }
@@ -69,7 +71,7 @@ impl Nearest {
 impl Query for Nearest {
     #[inline(always)]
     fn limit(&self) -> f64 {
-        self.within.max
+        self.limit
     }
     #[inline(always)]
     fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {

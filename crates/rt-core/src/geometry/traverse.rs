@@ -1,6 +1,6 @@
 //! One ray down the tree, nearest boxes first.
 
-use super::builder::MOST_DEPTH;
+use super::builder::{MOST_DEPTH, MOST_WITHOUT_TREE};
 use super::frame::LocalRay;
 use super::query::Query;
 use super::store::Store;
@@ -11,6 +11,7 @@ use core::ops::ControlFlow;
 
 /// Each level leaves at most seven children behind.
 pub(super) const STACK: usize = 7 * MOST_DEPTH + 8;
+const _: () = assert!(MOST_WITHOUT_TREE <= STACK);
 
 /// Where the ray enters a box, and what it holds, in one number that sorts by the former (not negative, so its bits
 /// are in order).
@@ -78,9 +79,37 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     let mut end = query.limit();
     let mut limit = local.limit(end);
     let mut stack = Stack::<STACK>::default();
-    let mut child = Child::node(0);
+    let mut next = None;
+    if tree.roots == 1 {
+        next = Some(Child::node(0));
+    } else {
+        for node in tree.nodes.iter().take(tree.roots) {
+            let (mut mask, at) = slab.test(lanes, &node.boxes, lanes.splat(limit));
+            if mask == 0 {
+                continue;
+            }
+            let at = lanes.store(at);
+            while mask != 0 {
+                let i = mask.trailing_zeros() as usize & 7;
+                mask &= mask - 1;
+                stack.insert_descending(0, entry(at[i], node.children[i]));
+            }
+        }
+    }
     loop {
-        let next = match child.as_node() {
+        let child = match next {
+            Some(next) => next,
+            None => loop {
+                let Some(top) = stack.pop() else {
+                    return ControlFlow::Continue(());
+                };
+                let (at, child) = unpack(top);
+                if at <= limit {
+                    break child;
+                }
+            },
+        };
+        next = match child.as_node() {
             Some(index) => {
                 tree.nodes.get(index).and_then(|node| descend(lanes, node, &slab, limit, &mut stack))
             }
@@ -92,18 +121,6 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
                 }
                 None
             }
-        };
-        child = match next {
-            Some(next) => next,
-            None => loop {
-                let Some(top) = stack.pop() else {
-                    return ControlFlow::Continue(());
-                };
-                let (at, child) = unpack(top);
-                if at <= limit {
-                    break child;
-                }
-            },
         };
     }
 }

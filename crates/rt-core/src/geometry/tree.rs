@@ -73,10 +73,12 @@ impl Child {
     }
 }
 
-/// The tree: node 0 is the root; no nodes when there is no bounded shape.
+/// The tree: the first nodes are its roots, one of them, all when the scene is small, or none when there is no bounded
+/// shape.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
+    pub roots: usize,
     /// The mean edge of the shapes' boxes, in kernel coordinates.
     pub box_size: f64,
 }
