@@ -207,3 +207,15 @@ fn decode_png(bytes: &[u8]) -> Result<Picture, Error> {
     };
     Ok(Picture { width, height, pixels })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_without_memory_is_an_error() {
+        let bytes = 12 * u128::from(u32::MAX) * u128::from(u32::MAX);
+        assert_eq!(Picture::try_new(u32::MAX, u32::MAX), Err(Error::Memory { bytes }));
+        assert_eq!(Picture::try_new(3, 2), Ok(Picture::new(3, 2)));
+    }
+}
