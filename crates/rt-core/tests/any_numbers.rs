@@ -9,13 +9,15 @@ use rt_core::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangl
 use rt_core::testing::{Effort, Random, check_primitive};
 use rt_core::{Error, Geometry, Interval, Primitive, Ray, Shape};
 
-/// Any bits, a plain number, or the sum of a small and a very small one: nearly equal, never quite.
+/// A number of plain size, one of another size, or the sum of a small and a very small one: nearly equal, never quite.
+///
+/// Sizes differ by no more than 1e12: of shapes whose own lengths, or whose distance from the ray's start, are more
+/// than 2^80 apart, double-double arithmetic cannot tell. Any bits at all are cast by `check_primitive`.
 fn number(random: &mut Random) -> f64 {
     let plain = |random: &mut Random| f64::from(random.below(65) as i32 - 32) / 8.0;
     match random.below(8) {
-        0 => random.any_f64(),
-        1 => random.sign() * random.magnitude(-160.0, 160.0),
-        2 | 3 => plain(random) + plain(random) * random.magnitude(-17.0, -12.0),
+        0 => random.sign() * random.magnitude(-6.0, 6.0),
+        1..=3 => plain(random) + plain(random) * random.magnitude(-17.0, -12.0),
         _ => plain(random),
     }
 }
@@ -140,7 +142,12 @@ shapes! {
 #[test]
 fn any_quartic() {
     for (seed, mut random) in cases() {
-        let c = [(); 5].map(|()| number(&mut random));
+        let any = seed % 4 == 0;
+        let c = [(); 5].map(|()| if any { random.any_f64() } else { number(&mut random) });
+        // What coefficients that are not finite give is documented; here they would make every comparison false.
+        if !c.iter().all(|c| c.is_finite()) {
+            continue;
+        }
         let found = quartic(c, Interval::LINE);
         let count: u32 = found.iter().map(|root| root.multiplicity).sum();
         assert!(count <= 4 && found.iter().all(|root| root.x.is_finite()), "seed {seed}: {c:?} {found:?}");
