@@ -218,8 +218,10 @@ impl Check<'_> {
         // of the interval nearer to the hit than that may be decided with more digits.
         let surface = shape.surface(ray, hit);
         let speed = ray.direction.dot(surface.normal).abs();
-        // The size of the shape counts among the distances: its far end may be what the ray meets.
+        // The size of the shape counts among the distances: its far end may be what the ray meets; so does the
+        // distance of the place from its anchor.
         let size = shape.bounds().map_or(0.0, |b| (b.max - b.min).element_sum());
+        let size = size + surface.local.abs().element_sum();
         let reach = ray.origin.abs().element_sum() + (ray.direction * t).abs().element_sum() + size;
         let doubt = (surface.error + 64.0 * U * reach) / speed;
         let before = Interval::new(0.0, t - doubt);
