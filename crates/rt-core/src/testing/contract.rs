@@ -289,7 +289,8 @@ impl Check<'_> {
         }
         // The point in plain arithmetic: two roundings of each coordinate of the product and the sum, and t's own.
         let (o, step) = (ray.origin.abs(), (ray.direction * t).abs());
-        let own = 4.0 * U * (o.element_sum() + step.element_sum());
+        // And as many of the least steps, where all is subnormal.
+        let own = 4.0 * U * (o.element_sum() + step.element_sum()) + f64::from_bits(16);
         // In units of the largest component, whose square may be out of range.
         let off = ray.at(t) - point;
         let unit = off.abs().max_element();
