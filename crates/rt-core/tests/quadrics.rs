@@ -330,3 +330,23 @@ fn same_bits_without_fused_products() {
     assert!(portable.len() > 300);
     assert_eq!(portable, answers());
 }
+
+/// The top of a sphere whose centre and radius cancel is at height zero to an ulp of the radius, not to one of zero.
+#[test]
+fn bounds_where_centre_and_radius_cancel() {
+    let sphere = Sphere::new([-1.375, -1.0, -75453.89482251913], 1.0).unwrap();
+    let top = DVec3::new(-1.375, 0.0, -75453.89482251913);
+    let bounds = sphere.bounds().unwrap();
+    assert!(bounds.max.y >= f64::EPSILON, "{bounds:?}");
+    let ray = Ray::new(top + DVec3::new(0.0, 5.0, 0.0), [1e-16, -1.0, 1e-16]);
+    let surface = sphere.surface(&ray, sphere.hit(&ray, Interval::FORWARD).unwrap());
+    assert!(bounds.contains(surface.point), "{surface:?}");
+}
+
+/// However thin a cone or cylinder is along an axis, its box holds what is promised to an ulp of its size.
+#[test]
+fn bounds_of_a_needle() {
+    let needle = Cylinder::new([0.0, 0.0, 0.0], [1e40, 0.0, 0.0], 1.0).unwrap();
+    let bounds = needle.bounds().unwrap();
+    assert!(bounds.max.y >= 1e40 * f64::EPSILON && bounds.min.z <= -1e40 * f64::EPSILON, "{bounds:?}");
+}

@@ -101,12 +101,12 @@ impl Cuboid {
     #[cold]
     #[inline(never)]
     fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let [near, far] = self.span_exactly(ray)?;
+        let [near, _] = self.span_exactly(ray)?;
         let slabs = self.slabs(ray);
-        let (entry, leave) = slabs.ends();
-        let ended = |t: f64| slabs.sound && (t == within.min || t == within.max);
-        let first = if ended(entry) { None } else { within.admit(near.t, near.face, 0) };
-        first.or_else(|| if ended(leave) { None } else { within.admit(far.t, far.face, 1) })
+        let (entry, _) = slabs.ends();
+        let ended = slabs.sound && (entry == within.min || entry == within.max);
+        let first = if ended { None } else { within.admit(near.t, near.face, 0) };
+        first.or_else(|| self.exit(ray, within))
     }
 
     /// Where a line that enters the box leaves it, if that is inside the interval.

@@ -346,7 +346,8 @@ impl Primitive for Sphere {
 
     fn bounds(&self) -> Option<Aabb> {
         // Two steps: one for the rounding of the sum, one for that of a point beside it.
-        let r = DVec3::splat(self.radius);
+        // The point itself is promised within an ulp of the radius, also where the centre and the radius cancel.
+        let r = DVec3::splat(self.radius * (1.0 + exp2i(-52)));
         Some(Aabb { min: (self.center - r).map(down), max: (self.center + r).map(up) })
     }
 

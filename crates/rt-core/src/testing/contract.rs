@@ -218,7 +218,11 @@ impl Check<'_> {
         // of the interval nearer to the hit than that may be decided with more digits.
         let surface = shape.surface(ray, hit);
         let speed = ray.direction.dot(surface.normal).abs();
-        let reach = ray.origin.abs().element_sum() + (ray.direction * t).abs().element_sum();
+        // The size of the shape counts among the distances: its far end may be what the ray meets; so does the
+        // distance of the place from its anchor.
+        let size = shape.bounds().map_or(0.0, |b| (b.max - b.min).element_sum());
+        let size = size + surface.local.abs().element_sum();
+        let reach = ray.origin.abs().element_sum() + (ray.direction * t).abs().element_sum() + size;
         let doubt = (surface.error + 64.0 * U * reach) / speed;
         let before = Interval::new(0.0, t - doubt);
         if let Some(hit) = shape.hit(ray, before).filter(|hit| !self.near_start(ray, *hit)) {
@@ -266,7 +270,8 @@ impl Check<'_> {
         let fail = |promise, found| Err(Failure { promise, ray: *ray, within: Interval::FORWARD, found });
         let Surface { point, local, normal, shading_normal, error, t, .. } = *surface;
         // Sums of three coordinates leave the range of f64: a plane met that far away has no error radius.
-        if point.abs().max_element() > f64::MAX / 4.0 {
+        let far = f64::MAX / 4.0;
+        if !(point.abs().max_element() < far && ray.at(t).abs().max_element() < far) {
             return Ok(());
         }
         let numbers = [point, local, normal, shading_normal, surface.object_point, surface.uv().extend(0.0)];
@@ -284,7 +289,8 @@ impl Check<'_> {
         }
         // The point in plain arithmetic: two roundings of each coordinate of the product and the sum, and t's own.
         let (o, step) = (ray.origin.abs(), (ray.direction * t).abs());
-        let own = 4.0 * U * (o.element_sum() + step.element_sum());
+        // And as many of the least steps, where all is subnormal.
+        let own = 4.0 * U * (o.element_sum() + step.element_sum()) + f64::from_bits(16);
         // In units of the largest component, whose square may be out of range.
         let off = ray.at(t) - point;
         let unit = off.abs().max_element();
@@ -322,13 +328,26 @@ impl Check<'_> {
         if direction.dot(surface.normal).abs() < 1e-3 || back.length() < 1e6 * surface.error {
             return Ok(());
         }
+        // Nor of a shape that is not much larger than the error radius, where it is.
+        if self.shape.bounds().is_some_and(|b| (b.max - b.min).max_element() < 1e6 * surface.error) {
+            return Ok(());
+        }
         let side = Side::of_arrival(ray.direction, surface.normal);
         let from = surface.departure(0, hit, side);
         let (shadow, within) = from.ray(back);
         // The last part of the way belongs to what the first ray's origin itself may lie on.
         let within = within.until(1.0 - 1e-3);
         let grazed = |met: Hit| self.shape.surface(&shadow, met).normal.dot(direction).abs() < 1e-3;
+        let shadow_length = |met: Hit| (self.shape.surface(&shadow, met).point - surface.point).length();
         match self.shape.hit_leaving(&shadow, within, &from) {
+            // Another part begins where the ray left: it left an edge, and rounding says on which side of it.
+            Some(met)
+                if met.part() != hit.part()
+                    && shadow_length(met)
+                        <= 8.0 * (surface.error + self.shape.surface(&shadow, met).error) =>
+            {
+                Ok(())
+            }
             Some(met) if grazed(met) || self.at_an_edge(ray, surface, &self.shape.surface(&shadow, met)) => {
                 Ok(())
             }
