@@ -1,7 +1,7 @@
 //! The default method.
 
 use super::super::{Roots, bracket};
-use super::{discs, split};
+use super::{discs, factors, split};
 use crate::Interval;
 use crate::double::Double;
 use crate::kernel::{Product, Task, run};
@@ -62,8 +62,8 @@ fn quick<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
     let i3 = i2 * exp2i(-k);
     let y = [c[0] * i3 * exp2i(-k), c[1] * i3, c[2] * i2, c[3] * i1, c[4] * lead];
     let inverse = 1.0 / y[4];
-    let factors = split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse)?;
-    let roots = discs::roots::<P>(&y, &factors)?;
+    let split = split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse);
+    let roots = split.and_then(|split| discs::roots::<P>(&y, &split)).or_else(|| factors::roots::<P>(&y))?;
     Some(roots.scaled(s))
 }
 

@@ -2,6 +2,7 @@
 
 mod certified;
 mod discs;
+mod factors;
 mod ferrari;
 mod graphics_gems;
 mod split;
