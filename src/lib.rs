@@ -1,5 +1,6 @@
-#![doc = "Exact, fast ray tracing of analytic shapes: the two libraries under one name."]
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
-pub use rt_core as core;
-pub use rt_shade as shade;
+pub use rt_core;
+pub use rt_shade;

@@ -39,6 +39,8 @@ pub struct Double {
     pub low: f64,
 }
 
+// The products take the kind of exact product as a parameter, which the operators' traits have no place for.
+#[allow(clippy::should_implement_trait)]
 impl Double {
     /// Zero.
     pub const ZERO: Double = Double { high: 0.0, low: 0.0 };

@@ -12,7 +12,10 @@ pub use glam;
 
 mod bounds;
 pub mod double;
+mod double_vector;
 mod error;
+mod expansion;
+mod frame;
 pub mod geometry;
 mod hit;
 pub mod kernel;
@@ -20,13 +23,17 @@ mod math;
 pub mod poly;
 mod primitive;
 mod ray;
+mod scaled;
 pub mod shape;
 mod surface;
+#[cfg(feature = "testing")]
+#[cfg_attr(docsrs, doc(cfg(feature = "testing")))]
+pub mod testing;
 mod transform;
 
 pub use bounds::Aabb;
 pub use error::Error;
-pub use geometry::{Found, Geometry, GeometryBuilder};
+pub use geometry::{DirectionCube, Found, Geometry, GeometryBuilder, Screen};
 pub use hit::{Hit, Interval};
 pub use primitive::Primitive;
 pub use ray::Ray;

@@ -1,6 +1,7 @@
 //! The contract of a shape.
 
 use crate::{Aabb, Departure, Hit, Interval, Ray, Surface};
+use alloc::sync::Arc;
 use core::fmt;
 
 /// A surface that rays can hit. Implement it to add a shape of your own ([`Shape::Custom`](crate::Shape)).
@@ -46,5 +47,26 @@ pub trait Primitive: fmt::Debug + Send + Sync {
             each(first);
             self.crossings(ray, within.after(first.t()), each);
         }
+    }
+}
+
+impl<P: Primitive + ?Sized> Primitive for Arc<P> {
+    fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        (**self).hit(ray, within)
+    }
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        (**self).crossings(ray, within, each)
+    }
+    fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
+        (**self).surface(ray, hit)
+    }
+    fn bounds(&self) -> Option<Aabb> {
+        (**self).bounds()
+    }
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        (**self).hit_leaving(ray, within, from)
+    }
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        (**self).crossings_leaving(ray, within, from, each)
     }
 }

@@ -32,6 +32,8 @@ impl Ray {
     /// Whether every component is finite and the direction is not zero.
     #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite() && self.direction.is_finite() && self.direction != DVec3::ZERO
+        // Zero times a number is zero, unless the number is infinite or NaN: one branch for all six.
+        let zero = self.origin * 0.0 + self.direction * 0.0;
+        zero.x + zero.y + zero.z == 0.0 && self.direction != DVec3::ZERO
     }
 }

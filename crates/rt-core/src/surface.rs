@@ -1,7 +1,22 @@
 //! The full record of a hit, and how a ray leaves a surface.
 
+use crate::frame::turns;
+use crate::math::sqrt;
 use crate::{Hit, Interval, Ray};
 use glam::{DVec2, DVec3};
+
+/// Texture coordinates, their angles not measured yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Coordinates {
+    /// The coordinates themselves.
+    Known(DVec2),
+    /// A vector whose angle is `u`, and `v`.
+    Side(DVec2, f64),
+    /// Longitude and latitude of the normal, about the y axis.
+    Globe,
+    /// The vectors whose angles are `u` and `v`.
+    Ring(DVec2, DVec2),
+}
 
 /// Everything about the point that a ray hit, made once, for the winning [`Hit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +36,8 @@ pub struct Surface {
     pub normal: DVec3,
     /// The unit normal that shading uses: differs from `normal` on a smooth triangle only.
     pub shading_normal: DVec3,
-    /// Texture coordinates as the shape's own documentation says: angles in turns, in `[0, 1)`; plane and disk:
-    /// lengths.
-    pub uv: DVec2,
+    /// What the texture coordinates are made of.
+    coordinates: Coordinates,
     /// The error radius: the true point lies within this distance of `point`.
     pub error: f64,
 }
@@ -42,7 +56,7 @@ impl Surface {
             object_point: local,
             normal,
             shading_normal: normal,
-            uv: DVec2::ZERO,
+            coordinates: Coordinates::Known(DVec2::ZERO),
             error,
         }
     }
@@ -50,8 +64,32 @@ impl Surface {
     /// The same record with these texture coordinates.
     #[inline]
     pub fn with_uv(mut self, uv: DVec2) -> Self {
-        self.uv = uv;
+        self.coordinates = Coordinates::Known(uv);
         self
+    }
+
+    /// The same record with these texture coordinates, to be measured when asked for.
+    #[inline(always)]
+    pub(crate) fn with_coordinates(mut self, coordinates: Coordinates) -> Self {
+        self.coordinates = coordinates;
+        self
+    }
+
+    /// Texture coordinates as the shape's own documentation says: angles in turns, in `[0, 1)`; plane and disk:
+    /// lengths.
+    ///
+    /// Computed at each call: an angle costs more than a hit, and few textures need one.
+    pub fn uv(&self) -> DVec2 {
+        match self.coordinates {
+            Coordinates::Known(uv) => uv,
+            Coordinates::Side(across, v) => DVec2::new(turns(across.x, across.y), v),
+            Coordinates::Globe => {
+                let n = self.normal;
+                let latitude = libm::atan2(n.y, sqrt(n.x * n.x + n.z * n.z));
+                DVec2::new(turns(n.x, -n.z), 0.5 + latitude * core::f64::consts::FRAC_1_PI)
+            }
+            Coordinates::Ring(around, tube) => DVec2::new(turns(around.x, around.y), turns(tube.x, tube.y)),
+        }
     }
 
     /// The same record with this point in the shape's own axes.

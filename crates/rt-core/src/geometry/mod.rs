@@ -1,8 +1,40 @@
 //! Many shapes: the nearest hit, or whether anything is in the way.
+//!
+//! A [`Geometry`] finds exactly what a loop over all its shapes would find, to the last bit, whatever the
+//! instruction set: boxes rounded outward only leave out shapes that the ray cannot hit, and each hit is computed by
+//! the shape itself.
+//!
+//! # Order of hits
+//! The hit with the least parameter is the nearest. Where the parameters of two objects are so close that their
+//! roundings could have exchanged them, the order is that of their refined parameters ([`Surface::t`]); at equal ones,
+//! leaving a solid comes before entering one (`direction . normal > 0` first), then the order of adding.
 
-use crate::{Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
+// `!(a < b)` is meant where it is written: it holds for NaN too.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
+mod batch;
+mod builder;
+mod cube;
+mod frame;
+mod packet;
+mod query;
+mod store;
+mod stream;
+mod traverse;
+mod tree;
+
+use crate::kernel::{Lanes, Vectorized, vectorize};
+use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
+use builder::Item;
 use core::ops::ControlFlow;
+pub use cube::DirectionCube;
+use frame::{Frame, LocalRay};
+pub use query::Screen;
+use query::{Any, Contest, Crossings, Nearest, Path, Query, Ruling};
+use store::{Run, Store};
+use traverse::traverse;
+use tree::{Child, Tree};
 
 /// A hit and the object it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,12 +49,19 @@ pub struct Found {
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
     shapes: Vec<Shape>,
+    frame: Frame,
+    tree: Tree,
+    store: Store,
+    /// The shapes outside the tree.
+    apart: Vec<Run>,
+    plain: bool,
 }
 
 /// Collects shapes for a [`Geometry`].
 #[derive(Clone, Debug, Default)]
 pub struct GeometryBuilder {
     shapes: Vec<Shape>,
+    plain: bool,
 }
 
 impl GeometryBuilder {
@@ -39,9 +78,25 @@ impl GeometryBuilder {
         (self.shapes.len() - 1) as u32
     }
 
+    /// Whether to build an acceleration structure (the default), or to test every shape with every ray. The answers
+    /// are the same bits: the plain loop is for tests and comparisons.
+    pub fn accelerated(mut self, accelerated: bool) -> Self {
+        self.plain = !accelerated;
+        self
+    }
+
     /// Prepares the set for rays.
     pub fn build(self) -> Geometry {
-        Geometry { shapes: self.shapes }
+        let GeometryBuilder { shapes, plain } = self;
+        let bounds: Vec<Option<Aabb>> =
+            shapes.iter().map(|shape| shape.bounds().filter(frame::is_regular)).collect();
+        let regular: Vec<Aabb> = bounds.iter().flatten().copied().collect();
+        let frame = Frame::around(&regular);
+        let mut geometry = Geometry { shapes, frame, plain, ..Geometry::default() };
+        if !plain {
+            geometry.accelerate(&bounds);
+        }
+        geometry
     }
 }
 
@@ -56,37 +111,77 @@ impl Geometry {
         &self.shapes
     }
 
-    /// The nearest hit inside the interval; equal ones are ordered by index.
+    /// The bytes of memory in use beside [`shapes`](Geometry::shapes).
+    pub fn memory(&self) -> usize {
+        self.tree.bytes() + self.store.bytes()
+    }
+
+    fn accelerate(&mut self, bounds: &[Option<Aabb>]) {
+        let mut items = Vec::with_capacity(bounds.len());
+        let mut apart: [Vec<u32>; Store::KINDS] = Default::default();
+        let mut counts = [0; Store::KINDS];
+        for (object, (shape, bounds)) in self.shapes.iter().zip(bounds).enumerate() {
+            let (object, kind) = (object as u32, Store::kind_of(shape));
+            counts[kind as usize] += 1;
+            match bounds {
+                Some(bounds) if items.len() < Child::CAPACITY => {
+                    let (min, max) = self.frame.outward(bounds);
+                    items.push(Item { min, object, max, kind });
+                }
+                _ => apart[kind as usize].push(object),
+            }
+        }
+        self.tree = builder::build(&mut items);
+        self.store.reserve(counts);
+        for item in items {
+            self.store.push(&self.shapes[item.object as usize], item.object);
+        }
+        // Those apart come last of their kind.
+        for (kind, objects) in apart.iter().enumerate().filter(|(_, objects)| !objects.is_empty()) {
+            let first = self.store.count(kind as u32);
+            self.apart.push(Run { kind: kind as u32, first, count: objects.len() });
+            for &object in objects {
+                self.store.push(&self.shapes[object as usize], object);
+            }
+        }
+    }
+
+    /// The nearest hit inside the interval: see the [order of hits](self#order-of-hits).
     pub fn nearest(&self, ray: &Ray, within: Interval) -> Option<Found> {
-        self.nearest_by(within, |_, s, within| s.hit(ray, within))
+        vectorize(FindNearest { geometry: self, ray, within, from: None })
     }
 
     /// The nearest hit of a ray that leaves a surface: see [`Departure`].
     pub fn nearest_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Found> {
-        self.nearest_by(within, |id, s, within| {
-            if id == from.object { s.hit_leaving(ray, within, from) } else { s.hit(ray, within) }
-        })
-    }
-
-    fn nearest_by(
-        &self,
-        within: Interval,
-        test: impl Fn(u32, &Shape, Interval) -> Option<Hit>,
-    ) -> Option<Found> {
-        let mut best: Option<Found> = None;
-        let mut rest = within;
-        for (id, shape) in self.shapes.iter().enumerate() {
-            if let Some(hit) = test(id as u32, shape, rest) {
-                best = Some(Found { object: id as u32, hit });
-                rest = rest.until(hit.t());
-            }
-        }
-        best
+        vectorize(FindNearest { geometry: self, ray, within, from: Some(from) })
     }
 
     /// Whether anything lies inside the interval.
     pub fn occluded(&self, ray: &Ray, within: Interval) -> bool {
-        self.shapes.iter().any(|s| s.hit(ray, within).is_some())
+        vectorize(FindAny { geometry: self, ray, within, from: None })
+    }
+
+    /// Whether anything lies inside the interval, for a ray that leaves a surface: see [`Departure`].
+    pub fn occluded_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> bool {
+        vectorize(FindAny { geometry: self, ray, within, from: Some(from) })
+    }
+
+    /// Whether anything opaque lies inside the interval, and what lies there that is not: in one search.
+    ///
+    /// `screens` says of each object, by index, what it does to the ray; those beyond its end are opaque. While
+    /// nothing opaque is found, the crossings of [`Screen::Sheer`] objects are reported to `each`, in no particular
+    /// order; they mean nothing when the answer is `true`. With `from`, the ray leaves that surface.
+    pub fn blocked(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        from: Option<&Departure>,
+        screens: &[Screen],
+        each: &mut dyn FnMut(Found),
+    ) -> bool {
+        let skip = from.map(|from| from.object);
+        let path = Path { within, skip, screens, each, blocked: false };
+        vectorize(FindPath { geometry: self, ray, from, path })
     }
 
     /// All crossings inside the interval of all objects, in no particular order, but ascending for each object;
@@ -98,28 +193,194 @@ impl Geometry {
         from: Option<&Departure>,
         each: &mut dyn FnMut(Found) -> ControlFlow<()>,
     ) {
-        for (id, shape) in self.shapes.iter().enumerate() {
-            let object = id as u32;
-            let mut flow = ControlFlow::Continue(());
-            let mut report = |hit| {
-                if flow.is_continue() {
-                    flow = each(Found { object, hit });
-                }
-            };
-            match from {
-                Some(from) if from.object == object => {
-                    shape.crossings_leaving(ray, within, from, &mut report)
-                }
-                _ => shape.crossings(ray, within, &mut report),
-            }
-            if flow.is_break() {
-                return;
-            }
-        }
+        vectorize(FindCrossings { geometry: self, ray, query: Crossings { within, from, each } })
     }
 
     /// The full record of a hit found with this ray.
     pub fn surface(&self, ray: &Ray, found: Found) -> Surface {
         self.shapes[found.object as usize].surface(ray, found.hit)
+    }
+
+    /// The shape that the ray leaves, if it is one of these.
+    #[inline(always)]
+    fn departed<'a>(&self, from: Option<&'a Departure>) -> Option<(&'a Departure, &Shape)> {
+        from.and_then(|from| self.shapes.get(from.object as usize).map(|shape| (from, shape)))
+    }
+
+    /// Shows the query every shape that the ray can hit, until it breaks.
+    #[inline(always)]
+    fn ask<L: Lanes, Q: Query>(
+        &self,
+        lanes: L,
+        ray: &Ray,
+        local: Option<&LocalRay>,
+        query: &mut Q,
+    ) -> ControlFlow<()> {
+        if self.plain {
+            for (object, shape) in self.shapes.iter().enumerate() {
+                query.visit(ray, object as u32, shape)?;
+            }
+            return ControlFlow::Continue(());
+        }
+        self.ask_apart(ray, query)?;
+        match local {
+            Some(local) => traverse(lanes, &self.tree, &self.store, ray, local, query),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Shows the query the shapes outside the tree.
+    #[inline(always)]
+    fn ask_apart<Q: Query>(&self, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
+        for run in &self.apart {
+            self.store.visit(*run, ray, query)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The first of the hits within an interval in which several objects are hit, too close to be sure.
+    #[cold]
+    fn decide(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
+        vectorize(Decide { geometry: self, ray, within, from })
+    }
+}
+
+/// Whether the ray can hit anything in the interval.
+#[inline(always)]
+fn is_legal(ray: &Ray, within: Interval) -> bool {
+    ray.is_valid() && within.min < within.max
+}
+
+struct FindNearest<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for FindNearest<'_> {
+    type Output = Option<Found>;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
+        let FindNearest { geometry, ray, within, from } = self;
+        if !is_legal(ray, within) {
+            return None;
+        }
+        let (local, window) = geometry.frame.enter(ray, within);
+        let mut nearest = Nearest::new(within, window, from.map(|from| from.object));
+        if let Some((from, shape)) = geometry.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            nearest.offer(from.object, hit);
+        }
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
+        match nearest.ruling() {
+            Ruling::Clear(found) => found,
+            Ruling::Contested(within) => geometry.decide(ray, within, from),
+        }
+    }
+}
+
+struct Decide<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for Decide<'_> {
+    type Output = Option<Found>;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
+        let Decide { geometry, ray, within, from } = self;
+        let mut contest = Contest::new(within, from.map(|from| from.object));
+        if let Some((from, shape)) = geometry.departed(from)
+            && let Some(hit) = shape.hit_leaving(ray, within, from)
+        {
+            contest.offer(ray, from.object, shape, hit);
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut contest);
+        contest.winner()
+    }
+}
+
+struct FindAny<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+}
+
+impl Vectorized for FindAny<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        let FindAny { geometry, ray, within, from } = self;
+        if !is_legal(ray, within) {
+            return false;
+        }
+        if let Some((from, shape)) = geometry.departed(from)
+            && shape.hit_leaving(ray, within, from).is_some()
+        {
+            return true;
+        }
+        let mut any = Any::new(within, from.map(|from| from.object));
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut any);
+        any.found
+    }
+}
+
+struct FindPath<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    from: Option<&'a Departure>,
+    path: Path<'a>,
+}
+
+impl Vectorized for FindPath<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        let FindPath { geometry, ray, from, mut path } = self;
+        let within = path.within;
+        if !is_legal(ray, within) {
+            return false;
+        }
+        if let Some(from) = from
+            && path.leave(geometry, ray, from).is_break()
+        {
+            return true;
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut path);
+        path.blocked
+    }
+}
+
+struct FindCrossings<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    query: Crossings<'a>,
+}
+
+impl Vectorized for FindCrossings<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let FindCrossings { geometry, ray, mut query } = self;
+        let within = query.within;
+        if !is_legal(ray, within) {
+            return;
+        }
+        if let Some((from, shape)) = geometry.departed(query.from) {
+            let crossings = |each: &mut dyn FnMut(Hit)| shape.crossings_leaving(ray, within, from, each);
+            if query::report(from.object, query.each, crossings).is_break() {
+                return;
+            }
+        }
+        let local = geometry.frame.enter(ray, within).0;
+        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
     }
 }

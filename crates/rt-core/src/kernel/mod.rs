@@ -4,8 +4,30 @@
 //! (where it computes exactly what Dekker's splitting computes), and vector code only culls.
 #![allow(unsafe_code)]
 
+mod avx2;
+mod boxes;
+mod lanes;
 mod level;
+mod memory;
+mod packet;
+mod stack;
 mod task;
 
+pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
+pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
+pub(crate) use memory::vec_on_large_pages;
+pub use packet::{Beam, BeamShape, EightRays};
+pub use stack::Stack;
 pub use task::{Dekker, Fused, Product, Task, run, run_portable};
+
+/// Runs the computation with the widest lanes of the [`level`] in use.
+#[inline(always)]
+pub fn vectorize<V: Vectorized>(task: V) -> V::Output {
+    #[cfg(all(target_arch = "x86_64", feature = "std"))]
+    if level() >= Level::Avx2 {
+        // SAFETY: the level is Avx2 only after run-time detection of all that `avx2::run` names.
+        return unsafe { avx2::run(task) };
+    }
+    task.run(PortableLanes)
+}

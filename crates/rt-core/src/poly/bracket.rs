@@ -67,13 +67,16 @@ fn monotone_roots<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
     let left = Knot { x: Double::from(-end), sign: end_sign(-1), reach: f64::INFINITY };
     let right = Knot { x: Double::from(end), sign: end_sign(1), reach: f64::INFINITY };
 
-    let critical = if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() };
+    let critical =
+        if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() };
     let mut from = left;
     for c in critical.iter() {
         let mut knot = critical_knot::<P>(p, c.x);
         if knot.sign == 0 || exact && knot.reach == 0.0 {
             // In doubt: `reach` 0 marks a sign that took more than double-double.
-            if let Some(multiplicity) = if exact { multiple_root::<P>(p, c.x) } else { Some(c.multiplicity + 1) } {
+            if let Some(multiplicity) =
+                if exact { multiple_root::<P>(p, c.x) } else { Some(c.multiplicity + 1) }
+            {
                 roots.push(c.x, multiplicity);
                 // Past a root of even order the sign is the one before, past one of odd order the other.
                 knot.sign = if multiplicity % 2 == 0 { from.sign } else { -from.sign };
@@ -194,7 +197,7 @@ fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
 /// A place that halves the bracket: the mean of the ends when they are near each other, otherwise of their exponents.
 fn middle(low: Double, high: Double) -> Double {
     let (a, b) = (low.high, high.high);
-    let near = exponent(b - a) <= exponent(if a.abs() > b.abs() { a } else { b }) - 1;
+    let near = exponent(b - a) < exponent(if a.abs() > b.abs() { a } else { b });
     if near {
         return (low.scale_exact(0.5)) + high.scale_exact(0.5);
     }

@@ -25,11 +25,11 @@ impl Expansion {
     }
 
     fn push(&mut self, part: f64) {
-        if part != 0.0 {
-            if let Some(slot) = self.part.get_mut(self.len) {
-                *slot = part;
-                self.len += 1;
-            }
+        if part != 0.0
+            && let Some(slot) = self.part.get_mut(self.len)
+        {
+            *slot = part;
+            self.len += 1;
         }
     }
 

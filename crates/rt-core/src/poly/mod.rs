@@ -11,7 +11,7 @@
 //! | a NaN or an infinity among them | no roots |
 //! | a root too large for `f64` | that root is left out |
 //!
-//! [`quadratic`], [`cubic`] and [`quartic`] have the exact number of roots and each root within one unit in the last
+//! [`quadratic`], [`cubic`] and [`quartic()`] have the exact number of roots and each root within one unit in the last
 //! place; how near, and how it is known, is said at each. The other methods for the quartic, [`quartic::ferrari`] and
 //! [`quartic::graphics_gems`], are kept for comparison.
 

@@ -162,7 +162,11 @@ impl Polynomial {
         let of = |(k, t): (usize, &Term)| {
             if t.mantissa.high == 0.0 { None } else { Some((constant - t.exponent).div_euclid(k as i32)) }
         };
-        if self.vanishes_at_zero() { 0 } else { self.terms.iter().enumerate().skip(1).filter_map(of).min().unwrap_or(0) }
+        if self.vanishes_at_zero() {
+            0
+        } else {
+            self.terms.iter().enumerate().skip(1).filter_map(of).min().unwrap_or(0)
+        }
     }
 
     /// The terms as seen at `x`.

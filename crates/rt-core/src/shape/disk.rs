@@ -1,40 +1,234 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+//! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
+
+use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
+use crate::double::Double;
+use crate::expansion::Expansion;
+use crate::kernel::{Product, Task, run};
+use crate::math::sqrt;
+use crate::scaled::{checked_length, checked_point, times_power};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
-/// Disk.
+/// A flat disk, its rim included. It has one part, 0, and a line meets it once at most; a ray in its plane does not.
+///
+/// # Texture axes
+/// As for the [`Plane`](super::Plane): `uv` are the lengths of `point - center` along
+/// [`texture_axes`](Disk::texture_axes), for a normal along a world axis the two others, exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
 pub struct Disk {
     center: DVec3,
-    normal: DVec3,
+    /// As given, times a power of two: largest component in `[1, 2)`.
+    scaled_normal: DVec3,
     radius: f64,
+    normal: DVec3,
+    axes: [DVec3; 2],
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
+    /// How far it reaches from its centre along each axis, rounded up.
+    reach: DVec3,
 }
 
 impl Disk {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The disk of `radius` about `center` across `normal`, of any length but zero; the surface normal is
+    /// `normal / |normal|`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ZeroLength`] for the normal, [`Error::NotPositive`] for the radius,
+    /// [`Error::OutOfRange`] for lengths beyond 1e150 and a radius below 1e-150.
     pub fn new(center: impl Into<DVec3>, normal: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
-        let (center, normal) = (center.into(), normal.into().normalize());
-        Ok(Self { center, normal, radius })
+        let center = checked_point("disk center", center.into())?;
+        let (normal, _) = flat::prescaled(flat::checked_direction("disk normal", normal.into())?);
+        let radius = checked_length("disk radius", radius)?;
+        let (first, second) = flat::plane_axes(normal);
+        let unit = flat::unit(flat::doubles(normal));
+        // The reach is radius sqrt(1 - n_i^2); sqrt(n_j^2 + n_k^2) errs by 4 u, the product by u; local coordinates
+        // round once more.
+        let reach = |a: f64, b: f64| radius * sqrt(a * a + b * b) * (1.0 + 16.0 * U);
+        Ok(Disk {
+            center,
+            scaled_normal: normal,
+            radius,
+            normal: unit,
+            axes: [first, second],
+            axis: flat::world_axis(normal),
+            reach: DVec3::new(reach(unit.y, unit.z), reach(unit.z, unit.x), reach(unit.x, unit.y)),
+        })
+    }
+
+    /// The centre: the anchor of local and texture coordinates.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The unit normal.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The two unit vectors along which texture coordinates count.
+    pub fn texture_axes(&self) -> [DVec3; 2] {
+        self.axes
     }
 
     /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    ///
+    /// # Errors
+    /// As [`Disk::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        Disk::new(by.point(self.center), by.direction(self.scaled_normal), self.radius * by.scale())
+    }
+
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
+    #[cold]
+    #[inline(never)]
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
+            return None;
+        }
+        let at = meeting::meet(self, ray)?;
+        if run(InDisk { at: &at, radius: self.radius }) { within.admit(at.t, 0, 0) } else { None }
     }
 }
 
-#[allow(unused_variables)]
+/// Whether a point lies no farther from the anchor than the radius, in double-double.
+struct InDisk<'a> {
+    at: &'a Meeting,
+    radius: f64,
+}
+
+impl Task for InDisk<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<P: Product>(self) -> bool {
+        // In units of the radius, so that no square over- or underflows; far outside is decided before.
+        let power = crate::math::exponent(self.radius);
+        let radius = times_power(self.radius, -power);
+        let shift = self.at.power - power;
+        let part = |x: Double| Double { high: times_power(x.high, shift), low: times_power(x.low, shift) };
+        let [x, y, z] = self.at.local.map(part);
+        let far = |x: Double| x.high.is_nan() || x.high.abs() > 4.0;
+        if far(x) || far(y) || far(z) {
+            return false;
+        }
+        let square = x.square::<P>() + y.square::<P>() + z.square::<P>();
+        square <= Double::product::<P>(radius, radius)
+    }
+}
+
+impl Piece for Disk {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane {
+            anchor: self.center,
+            normal: flat::doubles(self.scaled_normal),
+            axis: self.axis,
+            offset: 0.0,
+        }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        flat::expansions(self.scaled_normal)
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        // The hit is inside; what double-double leaves beside the rim is noise.
+        let point = at.point(self.center);
+        let point = flat::clamped(point, self.center - self.reach, self.center + self.reach);
+        let uv = at.along::<P>(&self.axes, self.axis);
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
+            .with_object_point(uv.extend(0.0))
+            .with_uv(uv)
+    }
+
+    fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), self.center, DVec3::ZERO, self.normal, self.radius)
+    }
+}
+
 impl Primitive for Disk {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        None
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
+        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
+        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
+        let p = ray.direction * rough.t - rough.w;
+        let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
+        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
+        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
+        if rough.sound & (rho2 - r2 > doubt) {
+            None
+        } else if rough.decides(within) & (r2 - rho2 > doubt) {
+            within.admit(rough.t, 0, 0)
+        } else {
+            self.hit_exactly(ray, within)
+        }
     }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        if let Some(hit) = self.hit(ray, within) {
+            each(hit);
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        Surface::new(hit.t(), p, p, DVec3::Y, 1e-12)
+        meeting::surface(self, ray, hit)
     }
+
     fn bounds(&self) -> Option<Aabb> {
+        let half = self.reach;
+        Some(flat::outward(self.center, -half, half))
+    }
+
+    fn hit_leaving(&self, _: &Ray, _: Interval, _: &Departure) -> Option<Hit> {
         None
+    }
+
+    fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_belongs_to_it() {
+        let disk = Disk::new([0.0; 3], [0.0, 0.0, 2.0], 5.0).unwrap();
+        let down = |x: f64, y: f64| disk.hit(&Ray::new([x, y, 7.0], [0.0, 0.0, -2.0]), Interval::FORWARD);
+        assert_eq!(down(3.0, 4.0).map(|h| h.t()), Some(3.5));
+        assert_eq!(down(3.0, 4.0_f64.next_up()), None);
+        assert!(down(3.0, 4.0_f64.next_down()).is_some());
+    }
+
+    #[test]
+    fn rims_of_extreme_sizes() {
+        for radius in [1e-150, 1e150] {
+            let disk = Disk::new([0.0; 3], [0.0, 1.0, 0.0], radius).unwrap();
+            let at = |x: f64| disk.hit(&Ray::new([x, radius, 0.0], [0.0, -1.0, 0.0]), Interval::FORWARD);
+            assert!(at(radius).is_some() && at(radius.next_up()).is_none());
+        }
+    }
+
+    #[test]
+    fn bounds_of_a_tilted_disk() {
+        let disk = Disk::new([10.0, 0.0, 0.0], [0.0, 0.6, 0.8], 2.0).unwrap();
+        let bounds = disk.bounds().unwrap();
+        assert!((bounds.max - DVec3::new(12.0, 1.6, 1.2)).abs().max_element() < 1e-14);
+        assert!(bounds.contains(DVec3::new(12.0, 0.0, 0.0)));
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], 0.0), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], f64::NAN), Err(Error::NotPositive { .. })));
+        assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
     }
 }

@@ -1,39 +1,202 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+//! An infinite plane: `normal . (p - point) = 0`.
+//!
+//! `hit` costs one division and a certificate: it compares `t` with both ends of the interval and goes to exact
+//! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
+//! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
+
+use super::flat::{self, Rough};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
+use crate::expansion::Expansion;
+use crate::kernel::Product;
+use crate::scaled::checked_point;
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
-/// Plane.
+/// An infinite plane. It has one part, 0, and a line meets it once at most.
+///
+/// # Texture axes
+/// `uv` are the lengths of `point - self.point()` along two unit vectors in the plane: take the two world axes in
+/// which the normal is not largest (of equals, x before y before z counts as the largest), in the order x, y, z. The
+/// first is projected onto the plane; the second is perpendicular to it, on the side of its world axis. For a normal
+/// along y that makes u the world's x and v its z, exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
 pub struct Plane {
     point: DVec3,
+    /// As given, times a power of two: largest component in `[1, 2)`.
+    scaled_normal: DVec3,
     normal: DVec3,
+    axes: [DVec3; 2],
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
 }
 
 impl Plane {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The plane through `point` across `normal`, of any length but zero; the surface normal is `normal / |normal|`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ZeroLength`] for the normal, [`Error::OutOfRange`] for a point beyond 1e150.
     pub fn new(point: impl Into<DVec3>, normal: impl Into<DVec3>) -> Result<Self, Error> {
-        let (point, normal) = (point.into(), normal.into().normalize());
-        Ok(Self { point, normal })
+        let point = checked_point("plane point", point.into())?;
+        let (normal, _) = flat::prescaled(flat::checked_direction("plane normal", normal.into())?);
+        let (first, second) = flat::plane_axes(normal);
+        Ok(Plane {
+            point,
+            scaled_normal: normal,
+            normal: flat::unit(flat::doubles(normal)),
+            axes: [first, second],
+            axis: flat::world_axis(normal),
+        })
+    }
+
+    /// The point it was made from: the anchor of local and texture coordinates.
+    pub fn point(&self) -> DVec3 {
+        self.point
+    }
+
+    /// The unit normal.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The two unit vectors along which texture coordinates count.
+    pub fn texture_axes(&self) -> [DVec3; 2] {
+        self.axes
     }
 
     /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    ///
+    /// # Errors
+    /// As [`Plane::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        Plane::new(by.point(self.point), by.direction(self.scaled_normal))
+    }
+
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
+    #[cold]
+    #[inline(never)]
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
+            return None;
+        }
+        within.admit(meeting::meet(self, ray)?.t, 0, 0)
     }
 }
 
-#[allow(unused_variables)]
+impl Piece for Plane {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane {
+            anchor: self.point,
+            normal: flat::doubles(self.scaled_normal),
+            axis: self.axis,
+            offset: 0.0,
+        }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        flat::expansions(self.scaled_normal)
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        let point = at.point(self.point);
+        let uv = at.along::<P>(&self.axes, self.axis);
+        Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
+            .with_object_point(uv.extend(0.0))
+            .with_uv(uv)
+    }
+
+    fn parallel(&self, ray: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0)
+    }
+}
+
 impl Primitive for Plane {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        within.admit((self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal), 0, 0)
+        let rough = Rough::new(self.point, self.scaled_normal, ray);
+        if rough.decides(within) { within.admit(rough.t, 0, 0) } else { self.hit_exactly(ray, within) }
     }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        if let Some(hit) = self.hit(ray, within) {
+            each(hit);
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        Surface::new(hit.t(), p, p - self.point, self.normal, 1e-12)
+        meeting::surface(self, ray, hit)
     }
+
     fn bounds(&self) -> Option<Aabb> {
         None
+    }
+
+    fn hit_leaving(&self, _: &Ray, _: Interval, _: &Departure) -> Option<Hit> {
+        None
+    }
+
+    fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_counts_in_world_axes_exactly() {
+        let floor = Plane::new([0.1, 0.0, -0.3], [0.0, 5.0, 0.0]).unwrap();
+        assert_eq!(floor.texture_axes(), [DVec3::X, DVec3::Z]);
+        let ray = Ray::new([1e6 + 0.7, 2.0, -0.25], [0.0, -3.0, 0.0]);
+        let hit = floor.hit(&ray, Interval::FORWARD).unwrap();
+        let surface = floor.surface(&ray, hit);
+        assert_eq!((surface.t, surface.normal), (2.0 / 3.0, DVec3::Y));
+        assert_eq!(surface.object_point, DVec3::new(1e6 + 0.7 - 0.1, -0.25 + 0.3, 0.0));
+        assert_eq!(surface.local.y, 0.0);
+        assert_eq!(surface.point, DVec3::new(1e6 + 0.7, 0.0, -0.25));
+    }
+
+    #[test]
+    fn the_length_of_the_normal_does_not_matter() {
+        for length in [1e-150, 1e-20, 7.0, 1e150] {
+            let plane = Plane::new([0.0, 1.0, 0.0], DVec3::new(0.0, 0.6, 0.8) * length).unwrap();
+            let ray = Ray::new([0.0, 5.0, 0.0], [0.0, -1e-150, 0.0]);
+            let hit = plane.hit(&ray, Interval::FORWARD).unwrap();
+            assert!((plane.surface(&ray, hit).t / 4e150 - 1.0).abs() < 1e-15);
+            assert!((plane.normal() - DVec3::new(0.0, 0.6, 0.8)).length() < 4e-16);
+        }
+    }
+
+    #[test]
+    fn rays_in_the_plane_or_beside_it_miss() {
+        let plane = Plane::new([0.0; 3], [1.0, 2.0, -3.0]).unwrap();
+        for origin in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] {
+            assert_eq!(plane.hit(&Ray::new(origin, [1.0, 1.0, 1.0]), Interval::LINE), None);
+        }
+    }
+
+    #[test]
+    fn an_interval_made_from_a_hit_does_not_contain_it() {
+        let plane = Plane::new([0.3, 0.2, 0.1], [1.0, 2.0, -3.1]).unwrap();
+        let mut random = 1_u32;
+        for _ in 0..1000 {
+            let mut number = || {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                f64::from(random) / f64::from(u32::MAX) - 0.5
+            };
+            let ray = Ray::new([number(), number(), number()], [number(), number(), number()]);
+            let Some(hit) = plane.hit(&ray, Interval::LINE) else { continue };
+            assert_eq!(plane.hit(&ray, Interval::LINE.until(hit.t())), None);
+            assert_eq!(plane.hit(&ray, Interval::LINE.after(hit.t())), None);
+        }
+    }
+
+    #[test]
+    fn constructor_errors() {
+        assert!(matches!(Plane::new([0.0; 3], [0.0; 3]), Err(Error::ZeroLength { .. })));
+        assert!(matches!(Plane::new([f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]), Err(Error::NotFinite { .. })));
+        assert!(matches!(Plane::new([0.0; 3], [0.0, f64::INFINITY, 0.0]), Err(Error::NotFinite { .. })));
     }
 }

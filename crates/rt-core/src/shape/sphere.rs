@@ -1,51 +1,376 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+//! The sphere `|p - center| = radius`.
+//!
+//! A ray is first moved to its closest approach to the centre, so that nothing is lost from afar, and the
+//! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere
+//! Intersection", Ray Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7).
+
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::kernel::{self, Product, Task};
+use crate::math::{exp2i, exponent, sqrt};
+use crate::scaled::{
+    CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
+    is_plain, largest, margin, moderate, range_guard, times_power, uncertainty,
+};
+use crate::surface::Coordinates;
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use glam::DVec3;
 
-/// Sphere.
+/// A sphere: its surface, hit from outside and from inside.
+///
+/// The only part is 0; root 0 is where the line enters, root 1 where it leaves. The normal points outward. `u` is
+/// the angle about the y axis from x towards -z, in turns in `[0, 1)`; `v` is 0 at the south pole (-y) and 1 at the
+/// north pole. The shape's own axes are the world's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
 pub struct Sphere {
     center: DVec3,
     radius: f64,
+    /// 2^-50 of the radius, or NaN where squares would leave the range of the exponents.
+    doubt: f64,
 }
 
 impl Sphere {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The sphere about `center` with `radius`, both in world units.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] or [`Error::OutOfRange`] for a centre that is not finite or has a coordinate beyond
+    /// 1e150, [`Error::NotPositive`] or [`Error::OutOfRange`] for the radius.
     pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
-        let (center,) = (center.into(),);
-        Ok(Self { center, radius })
+        let center = checked_point("center", center.into())?;
+        let radius = checked_length("radius", radius)?;
+        Ok(Sphere { center, radius, doubt: radius * exp2i(-50) + range_guard(radius) })
     }
 
-    /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    /// The centre.
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The same sphere scaled, turned and moved.
+    ///
+    /// # Errors
+    /// As [`Sphere::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        Sphere::new(by.point(self.center), self.radius * by.scale())
+    }
+
+    fn scaled(&self, ray: &Ray) -> Option<(ScaledRay, Chord)> {
+        let unit = exponent(self.radius);
+        let scaled = ScaledRay::new(ray, self.center, unit)?;
+        let chord = kernel::run(FindChord { ray: &scaled, radius: self.radius * exp2i(-unit) });
+        Some((scaled, chord))
+    }
+
+    /// The record of a place that is known to `error`.
+    #[inline(always)]
+    fn record(&self, t: f64, local: DoubleVector, error: f64) -> Surface {
+        let point = local.plus_f64(self.center);
+        Surface::new(t, point, local.high(), local.high() / self.radius, error_radius(point, error))
+            .with_coordinates(Coordinates::Globe)
+    }
+
+    /// [`Primitive::surface`] where the short way is not certain.
+    #[cold]
+    #[inline(never)]
+    fn surface_carefully(&self, ray: &Ray, hit: Hit) -> Surface {
+        let unit = exponent(self.radius);
+        let radius = self.radius * exp2i(-unit);
+        let Some(scaled) = ScaledRay::new(ray, self.center, unit) else {
+            return Surface::new(hit.t(), self.center, DVec3::ZERO, DVec3::Y, self.radius);
+        };
+        let found = kernel::run(FindRescaled { ray: &scaled, radius, hit });
+        let scale = exp2i(unit);
+        self.record(scaled.unscale(found.t).high, found.local.scale_exact(scale), found.error * scale)
+    }
+
+    /// Entrance and exit as `f64` finds them.
+    #[inline(always)]
+    fn rough(&self, ray: &Ray) -> Rough {
+        rough(self.radius, self.doubt, ray.origin - self.center, ray.direction)
+    }
+
+    /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
+    /// finds what `f64` without limits would have found.
+    #[cold]
+    fn rescaled(&self, ray: &Ray) -> Rough {
+        let unit = exponent(self.radius);
+        let Some(scaled) = ScaledRay::new(ray, self.center, unit) else { return Rough::Miss };
+        let radius = self.radius * exp2i(-unit);
+        match rough(radius, radius * exp2i(-50), scaled.relative.high(), scaled.direction) {
+            Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
+            other => other,
+        }
+    }
+
+    /// The crossing of this root in double-double.
+    #[cold]
+    fn exact(&self, ray: &Ray, within: Interval, root: u32) -> Option<Hit> {
+        let (scaled, chord) = self.scaled(ray)?;
+        if !(chord.depth.high > 0.0) {
+            return None;
+        }
+        admit(within, scaled.unscale(chord.shift + chord.at[(root & 1) as usize]), 0, root)
+    }
+
+    /// The crossing of this root, if it lies in the interval.
+    #[inline(always)]
+    fn crossing(&self, rough: &Rough, ray: &Ray, within: Interval, root: u32) -> Option<Hit> {
+        match rough {
+            Rough::Miss => None,
+            Rough::Doubt => self.exact(ray, within, root),
+            Rough::Span(span) => span[(root & 1) as usize].decide(within, || self.exact(ray, within, root)),
+        }
+    }
+
+    /// [`Primitive::hit`] where `f64` or the interval leave a doubt.
+    #[cold]
+    #[inline(never)]
+    fn hit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = self.rescaled(ray);
+        self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
     }
 }
 
-#[allow(unused_variables)]
-impl Primitive for Sphere {
-    fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        {
-            let w = ray.origin - self.center;
-            let a = ray.direction.length_squared();
-            let tc = -w.dot(ray.direction) / a;
-            let m = w + ray.direction * tc;
-            let h = (self.radius * self.radius - m.length_squared()) / a;
-            if !(h > 0.0) {
-                return None;
-            }
-            let h = h.sqrt();
-            within.admit(tc - h, 0, 0).or_else(|| within.admit(tc + h, 0, 1))
+/// A line and a sphere about zero in `f64`: certain, or in doubt.
+///
+/// The distance of the line from the centre is `|w x d| / |d|` (Lagrange's identity), so the crossings are at
+/// `(-w.d -+ sqrt(D)) / |d|^2` with `D = r^2 |d|^2 - |w x d|^2`.
+///
+/// With u = 2^-53, `w x d` errs by less than `2.9 u |w| |d| + u |w x d|`, the rounding of `w` included; hence `D`, where
+/// its sign could be in doubt at all (`|w x d|` about `r |d|` or below the error), by less than
+/// `(5.8 u r |w| + 11 u r^2 + 9 u^2 |w|^2) |d|^2`, less than `(8 u S r + 128 u^2 S^2) |d|^2` for S = |w| + 2 r, with the
+/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^14 times that, the parameters err
+/// by less than 2^-15 of half the chord from the root, and `w.d / |d|^2`, which errs by `9 u |w| / |d|`, by less still:
+/// 2^-13 of half the chord is a margin, and 2^-19 where it is 2^20 times that. `doubt` is 8 u r = 2^-50 r.
+#[inline(always)]
+fn rough(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> Rough {
+    let square = d.dot(d);
+    let moment = w.cross(d);
+    let depth = radius * radius * square - moment.dot(moment);
+    let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
+    let doubt = far * (doubt + far * exp2i(-99)) * square;
+    if depth < -doubt && moderate(square) {
+        return Rough::Miss;
+    }
+    if !(depth > CLEAR * doubt && moderate(square)) {
+        return Rough::Doubt;
+    }
+    let inverse = 1.0 / square;
+    let (middle, half) = (-(w.dot(d) * inverse), sqrt(depth) * inverse);
+    let margin = half * margin(depth, doubt);
+    Rough::Span([
+        Candidate { t: middle - half, margin, part: 0, root: 0 },
+        Candidate { t: middle + half, margin, part: 0, root: 1 },
+    ])
+}
+
+/// A line and a sphere about zero in double-double: `start + (t - shift) * direction`.
+struct Chord {
+    shift: Double,
+    start: DoubleVector,
+    /// The square of half the chord times the direction's squared length: positive where the line crosses.
+    depth: Double,
+    /// The crossings, after `shift`.
+    at: [Double; 2],
+}
+
+struct FindChord<'a> {
+    ray: &'a ScaledRay,
+    radius: f64,
+}
+
+impl Task for FindChord<'_> {
+    type Output = Chord;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Chord {
+        let d = self.ray.direction;
+        let square = d.dot(d);
+        let far = self.ray.relative;
+        let step = -(far.high().dot(d) / square);
+        let mut shift = Double::from(step);
+        let mut start = far + DoubleVector::product::<P>(d, step);
+        // The first step errs by a few u of the distance: from beyond 2^30 a second one brings the rest down.
+        if largest(far.high()) > exp2i(30) {
+            let step = -(start.high().dot(d) / square);
+            shift = shift + step;
+            start = start + DoubleVector::product::<P>(d, step);
+        }
+        let a = DoubleVector::from(d).dot_f64::<P>(d);
+        let b = start.dot_f64::<P>(d);
+        let c = Double::product::<P>(self.radius, self.radius) - start.length_squared::<P>();
+        let depth = b.square::<P>() + a.mul::<P>(c);
+        let half = depth.sqrt::<P>();
+        Chord { shift, start, depth, at: [(-b - half).div::<P>(a), (half - b).div::<P>(a)] }
+    }
+}
+
+/// What double-double arithmetic finds out about a hit, in the scale of the ray.
+struct Refined {
+    t: Double,
+    local: DoubleVector,
+    /// How far the true crossing can be from `local`.
+    error: f64,
+}
+
+/// One or two Newton steps on `|p|^2 = r^2` from the hit's parameter; `None` where they may not be enough.
+///
+/// With S the distance that the ray comes from and the radius, the place `p` is known to 2^-104 S and its residual,
+/// itself within 2^-102 of r^2, to 2^-102 r S in all, which moves the crossing by 2^-103 r S over half the chord, h: by
+/// less than 2^-73 r while h is above 2^-30 S. A step of size s, from the side of the root, leaves `s^2 / (2 h)`: less than
+/// 2^-73 h for `s <= 2^-36 h`.
+#[inline(always)]
+fn newton<P: Product>(relative: &DoubleVector, d: DVec3, radius: f64, t: f64, root: u32) -> Option<Refined> {
+    let square = d.dot(d);
+    let far = largest(relative.high()) + radius;
+    let side = if root & 1 == 0 { -1.0 } else { 1.0 };
+    let mut t = Double::from(t);
+    for _ in 0..2 {
+        let p = relative.advanced::<P>(d, t);
+        // Half the derivative; its length is half the chord times the direction's square.
+        let slope = side * p.high().dot(d);
+        if !(slope * slope > exp2i(-60) * (far * far) * square) || slope < 0.0 {
+            return None;
+        }
+        let change = -side * (p.excess::<P>(radius) / (2.0 * slope));
+        t = Double::sum(t.high, t.low + change);
+        if change.abs() * square <= exp2i(-36) * slope {
+            return Some(Refined { t, local: p.nudged(d, change), error: exp2i(-71) * radius });
         }
     }
+    None
+}
+
+struct FindSurface<'a> {
+    sphere: &'a Sphere,
+    ray: &'a Ray,
+    hit: Hit,
+}
+
+impl Task for FindSurface<'_> {
+    type Output = Surface;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        let FindSurface { sphere, ray, hit } = self;
+        let relative = DoubleVector::difference(ray.origin, sphere.center);
+        // False for a NaN in `doubt`: a radius near the ends of the range.
+        if largest(relative.high()) * exp2i(-50) < exp2i(30) * sphere.doubt
+            && is_plain(ray.direction)
+            && let Some(found) = newton::<P>(&relative, ray.direction, sphere.radius, hit.t(), hit.root())
+        {
+            return sphere.record(found.t.high, found.local, found.error);
+        }
+        sphere.surface_carefully(ray, hit)
+    }
+}
+
+struct FindRescaled<'a> {
+    ray: &'a ScaledRay,
+    radius: f64,
+    hit: Hit,
+}
+
+impl Task for FindRescaled<'_> {
+    type Output = Refined;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Refined {
+        let FindRescaled { ray, radius, hit } = self;
+        let far = largest(ray.relative.high());
+        if far < exp2i(30) * radius {
+            let t = times_power(hit.t(), -ray.power);
+            if let Some(found) = newton::<P>(&ray.relative, ray.direction, radius, t, hit.root()) {
+                return found;
+            }
+        }
+        // From the roots in double-double.
+        let chord = FindChord { ray, radius }.run::<P>();
+        let s = chord.at[(hit.root() & 1) as usize];
+        let mut local = chord.start + DoubleVector::from(ray.direction).mul::<P>(s);
+        if chord.depth.high <= 0.0 {
+            // The rounded ray misses: take the place on the surface that is next to its closest approach.
+            let length = local.length_squared::<P>().sqrt::<P>();
+            local = local.mul::<P>(Double::from(radius).div::<P>(length));
+        }
+        let half = sqrt(if chord.depth.high > 0.0 { chord.depth.high } else { 0.0 });
+        Refined { t: chord.shift + s, local, error: uncertainty(half) }
+    }
+}
+
+impl Primitive for Sphere {
+    #[inline]
+    fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        match self.rough(ray) {
+            Rough::Miss => None,
+            Rough::Doubt => self.hit_in_doubt(ray, within),
+            Rough::Span([enter, leave]) => {
+                let margin = enter.margin;
+                if enter.t - within.min > margin {
+                    if within.max - enter.t > margin {
+                        return within.admit(enter.t, 0, 0);
+                    }
+                    if enter.t - within.max > margin {
+                        return None;
+                    }
+                } else if within.min - enter.t > margin {
+                    if leave.t - within.min > margin && within.max - leave.t > margin {
+                        return within.admit(leave.t, 0, 1);
+                    }
+                    if within.min - leave.t > margin || leave.t - within.max > margin {
+                        return None;
+                    }
+                }
+                self.hit_in_doubt(ray, within)
+            }
+        }
+    }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        let rough = match self.rough(ray) {
+            Rough::Doubt => self.rescaled(ray),
+            clear => clear,
+        };
+        for root in 0..2 {
+            if let Some(hit) = self.crossing(&rough, ray, within, root) {
+                each(hit);
+            }
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        let l = p - self.center;
-        Surface::new(hit.t(), p, l, l / self.radius, 1e-12)
+        kernel::run(FindSurface { sphere: self, ray, hit })
     }
+
     fn bounds(&self) -> Option<Aabb> {
-        None
+        // Two steps: one for the rounding of the sum, one for that of a point beside it.
+        let r = DVec3::splat(self.radius);
+        Some(Aabb { min: (self.center - r).map(down), max: (self.center + r).map(up) })
     }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+        if from.side == Side::Outside || !ray.is_valid() {
+            return None;
+        }
+        let (scaled, chord) = self.scaled(ray)?;
+        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+    }
+
+    fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
+        if let Some(exit) = self.hit_leaving(ray, within, from) {
+            each(exit);
+        }
+    }
+}
+
+/// Two numbers down.
+fn down(x: f64) -> f64 {
+    x.next_down().next_down()
+}
+
+/// Two numbers up.
+fn up(x: f64) -> f64 {
+    x.next_up().next_up()
 }

@@ -1,40 +1,373 @@
-//! Placeholder until the real shape lands.
-use crate::{Aabb, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use glam::DVec3;
+//! A triangle: the convex hull of three points.
+//!
+//! With the corners taken from the origin of the ray, `A = a - o` and so on, the ray passes inside when the three edge
+//! functions `d . (B x C)`, `d . (C x A)`, `d . (A x B)` have one sign (Woop, Benthin, Wald 2013, Watertight
+//! Ray/Triangle Intersection, JCGT 2(1)). `hit` computes them in `f64` with one bound on their errors, and exactly
+//! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
+//! ray slips between them, and none is lost at a common corner.
 
-/// Triangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(dead_code)]
+use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::meeting::{self, ExactPlane, Meeting, Piece};
+use crate::double::{Double, fast_two_sum, two_difference};
+use crate::expansion::Expansion;
+use crate::kernel::{Product, Task, run};
+use crate::math::exp2i;
+use crate::scaled::{checked_point, largest, times_power};
+use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
+use alloc::sync::Arc;
+use glam::{DVec2, DVec3};
+
+/// A triangle, its edges included. It has one part, 0, and a line meets it once at most; a ray in its plane does not.
+///
+/// The normal is that of `(b - a) x (c - a)`: seen from the side it points to, the corners run counter-clockwise. The
+/// anchor of local coordinates is the first corner; `uv` are the barycentric weights of the second and the third.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     a: DVec3,
     b: DVec3,
     c: DVec3,
+    /// `(b - a) x (c - a)` times a power of two, largest component in `[1, 2)`.
+    scaled_normal: DVec3,
+    /// What rounding to `normal` left, so that both together are within 2^-104.
+    normal_rest: DVec3,
+    /// The power of two between `normal` and the product of the edges; NaN where that is too large, so that no
+    /// comparison in `f64` is certain.
+    area_scale: f64,
+    /// The largest coordinate of the edges, in size.
+    reach: f64,
+    normal: DVec3,
+    /// The world axis that the normal lies along exactly.
+    axis: Option<u8>,
+    /// The power of two between `scaled_normal` and the product of the edges when `reach` is in `[1, 2)`.
+    normal_scale: f64,
+    smooth: Option<Arc<[DVec3; 3]>>,
 }
 
 impl Triangle {
-    /// Checked.
-    #[allow(unused_parens)]
+    /// The triangle with the corners `a`, `b`, `c`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::OutOfRange`] for coordinates beyond 1e150, [`Error::Degenerate`] when the corners
+    /// lie exactly on a line.
     pub fn new(a: impl Into<DVec3>, b: impl Into<DVec3>, c: impl Into<DVec3>) -> Result<Self, Error> {
-        let (a, b, c) = (a.into(), b.into(), c.into());
-        Ok(Self { a, b, c })
+        let a = checked_point("triangle corner", a.into())?;
+        let b = checked_point("triangle corner", b.into())?;
+        let c = checked_point("triangle corner", c.into())?;
+        let reach = (b - a).abs().max((c - a).abs()).max_element();
+        let (exact, edge_power, normal_power) = exact_normal(a, b, c);
+        let area_power = 2 * edge_power + normal_power;
+        let normal = exact.map(|n| n.rounded());
+        if normal.iter().all(|n| n.high == 0.0) {
+            return Err(Error::Degenerate { vertices: [a, b, c] });
+        }
+        Ok(Triangle {
+            a,
+            b,
+            c,
+            scaled_normal: DVec3::from_array(normal.map(|n| n.high)),
+            normal_rest: DVec3::from_array(normal.map(|n| n.low)),
+            area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
+            reach,
+            normal: flat::unit(normal),
+            axis: flat::world_axis(DVec3::from_array(normal.map(|n| n.high))),
+            normal_scale: times_power(1.0, normal_power),
+            smooth: None,
+        })
+    }
+
+    /// The same triangle shaded with normals interpolated between those of its corners, each of any length but zero.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ZeroLength`].
+    pub fn with_normals(
+        mut self,
+        na: impl Into<DVec3>,
+        nb: impl Into<DVec3>,
+        nc: impl Into<DVec3>,
+    ) -> Result<Self, Error> {
+        let checked = |n: DVec3| -> Result<DVec3, Error> {
+            let n = flat::checked_direction("normal of a triangle's corner", n)?;
+            Ok(flat::unit(flat::doubles(flat::prescaled(n).0)))
+        };
+        self.smooth = Some(Arc::new([checked(na.into())?, checked(nb.into())?, checked(nc.into())?]));
+        Ok(self)
+    }
+
+    /// The corners.
+    pub fn corners(&self) -> [DVec3; 3] {
+        [self.a, self.b, self.c]
+    }
+
+    /// The geometric unit normal.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The unit normals of the corners that shading interpolates, if there are any.
+    pub fn corner_normals(&self) -> Option<[DVec3; 3]> {
+        self.smooth.as_deref().copied()
     }
 
     /// Scaled, turned and moved.
-    pub fn transformed(&self, _by: &Similarity) -> Result<Self, Error> {
-        Ok(*self)
+    ///
+    /// # Errors
+    /// As [`Triangle::new`].
+    pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
+        let moved = Triangle::new(by.point(self.a), by.point(self.b), by.point(self.c))?;
+        match self.corner_normals() {
+            Some([a, b, c]) => moved.with_normals(by.direction(a), by.direction(b), by.direction(c)),
+            None => Ok(moved),
+        }
+    }
+
+    /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
+    /// that `f64` gives was made from a hit, and does not contain it.
+    #[cold]
+    #[inline(never)]
+    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let rough = Rough::new(self.a, self.scaled_normal, ray);
+        if !ray.is_valid() || rough.ends(within) {
+            return None;
+        }
+        let signs = run(EdgeSigns { corners: self.corners(), ray });
+        let (least, most) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
+        if least < 0 && most > 0 {
+            return None;
+        }
+        within.admit(meeting::meet(self, ray)?.t, 0, 0)
     }
 }
 
-#[allow(unused_variables)]
+/// `(b - a) x (c - a)` without rounding, its largest component in `[1, 2)`: in units of `4^p 2^q`, with `2^p` the unit
+/// in which the largest coordinate of the edges is in `[1, 2)`; and `p`, `q`.
+fn exact_normal(a: DVec3, b: DVec3, c: DVec3) -> ([Expansion; 3], i32, i32) {
+    struct Cross([Double; 3], [Double; 3]);
+    impl Task for Cross {
+        type Output = [Expansion; 3];
+        #[inline(always)]
+        fn run<P: Product>(self) -> [Expansion; 3] {
+            flat::cross::<P>(&self.0, &self.1)
+        }
+    }
+    let power = flat::power_of((b - a).abs().max((c - a).abs()));
+    let edge = |to: DVec3| {
+        [Double::difference(to.x, a.x), Double::difference(to.y, a.y), Double::difference(to.z, a.z)]
+            .map(|x| x.scale_exact(exp2i(-power)))
+    };
+    let mut normal = run(Cross(edge(b), edge(c)));
+    let rough = DVec3::new(normal[0].rounded().high, normal[1].rounded().high, normal[2].rounded().high);
+    let normal_power = flat::power_of(rough);
+    normal.iter_mut().for_each(|n| n.scale_exact(exp2i(-normal_power)));
+    (normal, power, normal_power)
+}
+
+/// The exact signs of the edge functions opposite the corners.
+struct EdgeSigns<'a> {
+    corners: [DVec3; 3],
+    ray: &'a Ray,
+}
+
+impl Task for EdgeSigns<'_> {
+    type Output = [i32; 3];
+    #[inline(always)]
+    fn run<P: Product>(self) -> [i32; 3] {
+        let (d, _) = flat::prescaled(self.ray.direction);
+        let o = self.ray.origin;
+        let from_origin =
+            self.corners.map(|p| [(p.x, o.x), (p.y, o.y), (p.z, o.z)].map(|(p, o)| Double::difference(p, o)));
+        let largest = from_origin.iter().flatten().fold(0.0_f64, |m, x| m.max(x.high.abs()));
+        let scale = exp2i(-flat::power_of(DVec3::splat(largest)));
+        let [a, b, c] = from_origin.map(|p| p.map(|x| x.scale_exact(scale)));
+        [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| {
+            let m = flat::cross::<P>(p, q);
+            let mut sum = Expansion::ZERO;
+            for (m, d) in m.iter().zip(d.to_array()) {
+                sum.add_expansion_product::<P>(m, Double::from(d));
+            }
+            sum.sign()
+        })
+    }
+}
+
+impl Piece for Triangle {
+    #[inline(always)]
+    fn plane(&self) -> ExactPlane {
+        ExactPlane { anchor: self.a, normal: self.normal_sum(), axis: self.axis, offset: 0.0 }
+    }
+
+    fn exact_normal(&self) -> [Expansion; 3] {
+        exact_normal(self.a, self.b, self.c).0
+    }
+
+    #[inline(always)]
+    fn record<P: Product>(&self, at: &Meeting) -> Surface {
+        // The hit is inside; what double-double leaves beside the corners is noise.
+        let Triangle { a, b, c, .. } = *self;
+        let point = flat::clamped(at.point(a), a.min(b).min(c), a.max(b).max(c));
+        let uv = self.weights::<P>(at);
+        let surface = Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point)).with_uv(uv);
+        match self.smooth.as_deref() {
+            Some([a, b, c]) => {
+                let normal = *a * (1.0 - uv.x - uv.y) + *b * uv.x + *c * uv.y;
+                // Opposite corner normals may cancel: the geometric normal is all there is then.
+                surface.with_shading_normal(normal.try_normalize().unwrap_or(self.normal))
+            }
+            None => surface,
+        }
+    }
+
+    fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
+        Surface::new(hit.t(), self.a, DVec3::ZERO, self.normal, self.reach)
+    }
+}
+
+impl Triangle {
+    #[inline(always)]
+    fn normal_sum(&self) -> [Double; 3] {
+        let (high, low) = (self.scaled_normal.to_array(), self.normal_rest.to_array());
+        [0, 1, 2].map(|i| Double { high: high[i], low: low[i] })
+    }
+
+    /// The weights of the second and third corner at a point of the plane.
+    #[inline(always)]
+    fn weights<P: Product>(&self, at: &Meeting) -> DVec2 {
+        // In the two coordinates in which the triangle is largest: the plane point l = beta (b - a) + gamma (c - a)
+        // gives beta = (l x e2)_k / n_k and gamma = (e1 x l)_k / n_k.
+        let k = flat::dominant(self.scaled_normal);
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let power = flat::power_of(DVec3::splat(self.reach));
+        let (a, b, c) = (self.a.to_array(), self.b.to_array(), self.c.to_array());
+        let unit = exp2i(-power);
+        let edge = |to: [f64; 3]| [i, j].map(|i| Double::difference(to[i], a[i]).scale_exact(unit));
+        // In two steps: the unit of a place met from afar may be more than 2^1023 times as large.
+        let shift = (at.power - power).clamp(-2000, 2000);
+        let (first, second) = (exp2i(shift / 2), exp2i(shift - shift / 2));
+        let l = [i, j].map(|i| at.local[i].scale_exact(first).scale_exact(second));
+        let area = self.normal_sum()[k].scale_exact(self.normal_scale);
+        let inverse = 1.0 / area.high;
+        let weight = |p: [Double; 2], q: [Double; 2]| {
+            let (x, y) = (p[0].mul::<P>(q[1]), p[1].mul::<P>(q[0]));
+            let (s, e) = two_difference(x.high, y.high);
+            let (high, low) = fast_two_sum(s, e + (x.low - y.low));
+            meeting::quotient::<P>(Double { high, low }, area, inverse).high.clamp(0.0, 1.0)
+        };
+        DVec2::new(weight(l, edge(c)), weight(edge(b), l))
+    }
+}
+
 impl Primitive for Triangle {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        None
+        let (e1, e2) = (self.b - self.a, self.c - self.a);
+        let (s, d) = (self.a - ray.origin, ray.direction);
+        let r = d.cross(s);
+        let denominator = self.scaled_normal.dot(d);
+        let of_b = -e2.dot(r);
+        let of_c = e1.dot(r);
+        let of_a = denominator * self.area_scale - of_b - of_c;
+        // With E, S, D the largest coordinates of edges, s and d: a component of r is at most 2 D S and errs by
+        // 6 u D S (differences, products, difference); its product with an edge errs by 42 u E D S (three terms:
+        // 18 u from r, 24 u from the edge, the product and two additions). The product of the areas is at most
+        // 6 E E D and errs by 5 u of that with the rounded normal. The third function adds both others and 2 u of
+        // its terms: (84 + 36) u E D S + (30 + 6) u E E D at most.
+        let base = largest(d) * (largest(s) + self.reach);
+        let doubt = (128.0 * U) * self.reach * base;
+        let least = lesser(of_a, lesser(of_b, of_c));
+        let most = greater(of_a, greater(of_b, of_c));
+        // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
+        let certain =
+            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
+        if certain & (least < -doubt) & (most > doubt) {
+            return None;
+        }
+        if certain & ((least > doubt) | (most < -doubt)) {
+            let rough = Rough::new(self.a, self.scaled_normal, ray);
+            if rough.decides(within) {
+                return within.admit(rough.t, 0, 0);
+            }
+        }
+        self.hit_exactly(ray, within)
     }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        if let Some(hit) = self.hit(ray, within) {
+            each(hit);
+        }
+    }
+
     fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
-        let p = ray.at(hit.t());
-        Surface::new(hit.t(), p, p, DVec3::Y, 1e-12)
+        meeting::surface(self, ray, hit)
     }
+
     fn bounds(&self) -> Option<Aabb> {
+        let least = self.a.min(self.b).min(self.c);
+        let most = self.a.max(self.b).max(self.c);
+        Some(flat::outward(DVec3::ZERO, least, most))
+    }
+
+    fn hit_leaving(&self, _: &Ray, _: Interval, _: &Departure) -> Option<Hit> {
         None
+    }
+
+    fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+/// Below this, products of coordinates may have lost digits to underflow.
+const LEAST_BASE: f64 = exp2i(-900);
+/// Above this, sums of products may overflow: they are at most 2^50 times as large as what is compared with it.
+const MOST_BASE: f64 = exp2i(900);
+
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_and_corners_belong_to_it() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0]).unwrap();
+        let down = |x: f64, y: f64| triangle.hit(&Ray::new([x, y, 2.0], [0.0, 0.0, -1.0]), Interval::FORWARD);
+        for (x, y) in [(0.0, 0.0), (3.0, 0.0), (0.0, 3.0), (1.0, 2.0), (2.0, 0.0)] {
+            assert!(down(x, y).is_some(), "{x} {y}");
+        }
+        assert_eq!(down(1.0, 2.0_f64.next_up()), None);
+        assert_eq!(down(2.0, -f64::MIN_POSITIVE), None);
+    }
+
+    #[test]
+    fn weights_and_normals() {
+        let triangle = Triangle::new([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0]).unwrap();
+        let smooth = triangle.with_normals([0.0, 0.0, 3.0], [0.0, 5.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+        let ray = Ray::new([1.0, 1.0, 1.0], [0.0, 0.0, -1.0]);
+        let surface = smooth.surface(&ray, smooth.hit(&ray, Interval::FORWARD).unwrap());
+        assert_eq!(surface.uv(), DVec2::new(0.5, 0.25));
+        assert_eq!(surface.normal, DVec3::Z);
+        let half = 0.5_f64.sqrt();
+        assert!((surface.shading_normal - DVec3::new(0.0, half, half)).length() < 1e-15);
+    }
+
+    #[test]
+    fn the_normal_of_a_sliver_is_exact() {
+        let (a, b) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.1, 1.2, 1.3));
+        let triangle = Triangle::new(a, b, DVec3::new(0.6, 0.7, 0.8_f64.next_up())).unwrap();
+        // The third corner lies a few roundings off the line: the normal is across it all the same.
+        assert!(triangle.normal().dot((b - a).normalize()).abs() < 2e-16);
+    }
+
+    #[test]
+    fn constructor_errors() {
+        let line = Triangle::new([0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [3.0, 3.0, 3.0]);
+        assert!(matches!(line, Err(Error::Degenerate { .. })));
+        let fine = Triangle::new([0.0, 0.0, 0.0], [1e-150, 0.0, 0.0], [0.0, 1e-150, 0.0]).unwrap();
+        assert_eq!(fine.normal(), DVec3::Z);
+        assert!(matches!(fine.with_normals(DVec3::Z, DVec3::ZERO, DVec3::Z), Err(Error::ZeroLength { .. })));
     }
 }

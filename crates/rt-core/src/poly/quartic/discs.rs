@@ -84,7 +84,14 @@ fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
             // A little more than 4, for the roundings.
             radius[i] = 4.01 * (w[i].abs() + noise[i]);
         }
-        let i = [1.0 / d01.abs(), 1.0 / d02.abs(), 1.0 / d03.abs(), 1.0 / d12.abs(), 1.0 / d13.abs(), 1.0 / d23.abs()];
+        let i = [
+            1.0 / d01.abs(),
+            1.0 / d02.abs(),
+            1.0 / d03.abs(),
+            1.0 / d12.abs(),
+            1.0 / d13.abs(),
+            1.0 / d23.abs(),
+        ];
         let share = [
             radius[1] * i[0] + radius[2] * i[1] + radius[3] * i[2],
             radius[0] * i[0] + radius[2] * i[3] + radius[3] * i[4],
@@ -167,7 +174,8 @@ fn none(c: &[f64; 5], z: &Pair, y: &Pair) -> Option<Roots<4>> {
         sqrt(a * b)
     };
     let between = value(z, y);
-    let clear = |z: &Pair| 4.01 * z.residual(c) <= 0.25 * z.im * (lead * z.im * between) && z.blur() < 0.25 * z.im;
+    let clear =
+        |z: &Pair| 4.01 * z.residual(c) <= 0.25 * z.im * (lead * z.im * between) && z.blur() < 0.25 * z.im;
     if clear(z) && clear(y) { Some(Roots::default()) } else { None }
 }
 
@@ -185,7 +193,13 @@ impl Pair {
     #[inline(always)]
     fn new(f: &Factor, d: f64) -> Self {
         let constant = f.constant.max(0.0);
-        Pair { linear: f.linear, constant: f.constant, re: -0.5 * f.linear, im: sqrt(-d), modulus: sqrt(constant) }
+        Pair {
+            linear: f.linear,
+            constant: f.constant,
+            re: -0.5 * f.linear,
+            im: sqrt(-d),
+            modulus: sqrt(constant),
+        }
     }
 
     /// How far the roots of the factor may be from `re + i im`: the discriminant is rounded to 2^-52 of the constant

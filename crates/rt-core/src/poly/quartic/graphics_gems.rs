@@ -45,8 +45,20 @@ pub fn graphics_gems(c: [f64; 5], within: Interval) -> Roots<4> {
         let z = roots[0];
         let u = z * z - r;
         let v = 2.0 * z - p;
-        let u = if is_zero(u) { Some(0.0) } else if u > 0.0 { Some(sqrt(u)) } else { None };
-        let v = if is_zero(v) { Some(0.0) } else if v > 0.0 { Some(sqrt(v)) } else { None };
+        let u = if is_zero(u) {
+            Some(0.0)
+        } else if u > 0.0 {
+            Some(sqrt(u))
+        } else {
+            None
+        };
+        let v = if is_zero(v) {
+            Some(0.0)
+        } else if v > 0.0 {
+            Some(sqrt(v))
+        } else {
+            None
+        };
         if let (Some(u), Some(v)) = (u, v) {
             let v = if q < 0.0 { -v } else { v };
             for (linear, constant) in [(v, z - u), (-v, z + u)] {

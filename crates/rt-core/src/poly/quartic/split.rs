@@ -59,7 +59,8 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
         g.linear = (c - f.linear * g.constant) / f.constant;
         f.linear = a - g.linear;
     }
-    let sound = f.linear.is_finite() && f.constant.is_finite() && g.linear.is_finite() && g.constant.is_finite();
+    let sound =
+        f.linear.is_finite() && f.constant.is_finite() && g.linear.is_finite() && g.constant.is_finite();
     if sound { Some([f, g]) } else { None }
 }
 

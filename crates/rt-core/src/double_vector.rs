@@ -1,0 +1,144 @@
+//! Vectors of double-double numbers.
+
+use crate::double::{Double, two_difference, two_sum};
+use crate::kernel::Product;
+use core::ops::{Add, Neg, Sub};
+use glam::DVec3;
+
+/// Three double-double coordinates: about 106 bits each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct DoubleVector {
+    pub x: Double,
+    pub y: Double,
+    pub z: Double,
+}
+
+impl DoubleVector {
+    /// The exact value of a vector.
+    #[inline(always)]
+    pub fn from(v: DVec3) -> Self {
+        DoubleVector { x: Double::from(v.x), y: Double::from(v.y), z: Double::from(v.z) }
+    }
+
+    /// The exact difference of two points.
+    #[inline(always)]
+    pub fn difference(a: DVec3, b: DVec3) -> Self {
+        DoubleVector {
+            x: Double::difference(a.x, b.x),
+            y: Double::difference(a.y, b.y),
+            z: Double::difference(a.z, b.z),
+        }
+    }
+
+    /// `v * s`, exactly.
+    #[inline(always)]
+    pub fn product<P: Product>(v: DVec3, s: f64) -> Self {
+        DoubleVector {
+            x: Double::product::<P>(v.x, s),
+            y: Double::product::<P>(v.y, s),
+            z: Double::product::<P>(v.z, s),
+        }
+    }
+
+    /// `self + t * d`, within a few 2^-106 of the largest of the terms.
+    #[inline(always)]
+    pub fn advanced<P: Product>(&self, d: DVec3, t: Double) -> Self {
+        let along = |x: Double, d: f64| {
+            let (p, e) = P::two_product(d, t.high);
+            let (s, f) = two_sum(x.high, p);
+            Double::sum(s, f + (x.low + (e + d * t.low)))
+        };
+        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
+    }
+
+    /// `self + t * d` for a step far smaller than `self`.
+    #[inline(always)]
+    pub fn nudged(self, d: DVec3, t: f64) -> Self {
+        let along = |x: Double, d: f64| Double::sum(x.high, x.low + d * t);
+        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
+    }
+
+    /// `|self|^2 - r^2` for a place near the sphere: within 2^-102 of `r^2`, or a unit in the last place.
+    #[inline(always)]
+    pub fn excess<P: Product>(self, r: f64) -> f64 {
+        let (xx, x_low) = P::two_product(self.x.high, self.x.high);
+        let (yy, y_low) = P::two_product(self.y.high, self.y.high);
+        let (zz, z_low) = P::two_product(self.z.high, self.z.high);
+        let (rr, r_low) = P::two_product(r, r);
+        let (s, s_low) = two_sum(xx, yy);
+        let (u, u_low) = two_difference(zz, rr);
+        let (v, v_low) = two_sum(s, u);
+        let cross = self.x.high * self.x.low + self.y.high * self.y.low + self.z.high * self.z.low;
+        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low)) + 2.0 * cross))
+    }
+
+    /// The product with a power of two: exact.
+    #[inline(always)]
+    pub fn scale_exact(self, power: f64) -> Self {
+        DoubleVector {
+            x: self.x.scale_exact(power),
+            y: self.y.scale_exact(power),
+            z: self.z.scale_exact(power),
+        }
+    }
+
+    /// The product with a number.
+    #[inline(always)]
+    pub fn mul<P: Product>(self, s: Double) -> Self {
+        DoubleVector { x: self.x.mul::<P>(s), y: self.y.mul::<P>(s), z: self.z.mul::<P>(s) }
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot<P: Product>(self, b: DoubleVector) -> Double {
+        self.x.mul::<P>(b.x) + self.y.mul::<P>(b.y) + self.z.mul::<P>(b.z)
+    }
+
+    /// The scalar product with a vector of `f64`.
+    #[inline(always)]
+    pub fn dot_f64<P: Product>(self, b: DVec3) -> Double {
+        self.x.scale::<P>(b.x) + self.y.scale::<P>(b.y) + self.z.scale::<P>(b.z)
+    }
+
+    /// The square of the length.
+    #[inline(always)]
+    pub fn length_squared<P: Product>(self) -> Double {
+        self.x.square::<P>() + self.y.square::<P>() + self.z.square::<P>()
+    }
+
+    /// The leading parts: the nearest `f64` of each coordinate.
+    #[inline(always)]
+    pub fn high(self) -> DVec3 {
+        DVec3::new(self.x.high, self.y.high, self.z.high)
+    }
+
+    /// `self + v`, rounded once: within half a unit in the last place and a little.
+    #[inline(always)]
+    pub fn plus_f64(self, v: DVec3) -> DVec3 {
+        DVec3::new((self.x + v.x).high, (self.y + v.y).high, (self.z + v.z).high)
+    }
+}
+
+impl Add for DoubleVector {
+    type Output = DoubleVector;
+    #[inline(always)]
+    fn add(self, b: DoubleVector) -> DoubleVector {
+        DoubleVector { x: self.x + b.x, y: self.y + b.y, z: self.z + b.z }
+    }
+}
+
+impl Sub for DoubleVector {
+    type Output = DoubleVector;
+    #[inline(always)]
+    fn sub(self, b: DoubleVector) -> DoubleVector {
+        DoubleVector { x: self.x - b.x, y: self.y - b.y, z: self.z - b.z }
+    }
+}
+
+impl Neg for DoubleVector {
+    type Output = DoubleVector;
+    #[inline(always)]
+    fn neg(self) -> DoubleVector {
+        DoubleVector { x: -self.x, y: -self.y, z: -self.z }
+    }
+}

@@ -1,0 +1,235 @@
+//! Many rays at once: packets of those that go side by side, the others interleaved. The answers are the same bits as
+//! one by one: the ways differ only in which boxes they pass over.
+
+use super::frame::{LocalRay, Window};
+use super::packet::{PACKET, Packet};
+use super::query::{Any, Nearest, Query, Ruling};
+use super::stream::interleave;
+use super::{FindAny, FindNearest, Found, Geometry, is_legal};
+use crate::kernel::{Lanes, Vectorized, vectorize};
+use crate::{Interval, Ray};
+
+/// The rays that are looked at together: those without company are collected over a block.
+const BLOCK: usize = 1024;
+
+/// The rays in flight when interleaved.
+const IN_FLIGHT: usize = 12;
+
+/// Trees larger than this are not likely to stay in a core's own cache.
+const CACHE: usize = 1 << 20;
+
+/// What is asked about each ray of a batch.
+trait Request {
+    type Query: Query;
+    type Answer;
+    fn query(within: Interval, window: Window) -> Self::Query;
+    /// The answer when the ray cannot hit anything.
+    fn nothing() -> Self::Answer;
+    fn answer(geometry: &Geometry, ray: &Ray, query: &Self::Query) -> Self::Answer;
+    /// The answer for a ray on its own.
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Self::Answer;
+}
+
+struct NearestRequest;
+
+impl Request for NearestRequest {
+    type Query = Nearest;
+    type Answer = Option<Found>;
+    #[inline(always)]
+    fn query(within: Interval, window: Window) -> Nearest {
+        Nearest::new(within, window, None)
+    }
+    #[inline(always)]
+    fn nothing() -> Option<Found> {
+        None
+    }
+    #[inline(always)]
+    fn answer(geometry: &Geometry, ray: &Ray, query: &Nearest) -> Option<Found> {
+        match query.ruling() {
+            Ruling::Clear(found) => found,
+            Ruling::Contested(within) => geometry.decide(ray, within, None),
+        }
+    }
+    #[inline(always)]
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Option<Found> {
+        FindNearest { geometry, ray, within, from: None }.run(lanes)
+    }
+}
+
+struct AnyRequest;
+
+impl Request for AnyRequest {
+    type Query = Any;
+    type Answer = bool;
+    #[inline(always)]
+    fn query(within: Interval, _: Window) -> Any {
+        Any::new(within, None)
+    }
+    #[inline(always)]
+    fn nothing() -> bool {
+        false
+    }
+    #[inline(always)]
+    fn answer(_: &Geometry, _: &Ray, query: &Any) -> bool {
+        query.found
+    }
+    #[inline(always)]
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> bool {
+        FindAny { geometry, ray, within, from: None }.run(lanes)
+    }
+}
+
+struct Batch<'a, R: Request> {
+    geometry: &'a Geometry,
+    rays: &'a [Ray],
+    within: &'a [Interval],
+    answers: &'a mut [R::Answer],
+}
+
+impl<R: Request> Vectorized for Batch<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Batch { geometry, rays, within, answers } = self;
+        for ((rays, within), answers) in
+            rays.chunks(BLOCK).zip(within.chunks(BLOCK)).zip(answers.chunks_mut(BLOCK))
+        {
+            block::<R, L>(lanes, geometry, rays, within, answers);
+        }
+    }
+}
+
+/// At most [`BLOCK`] rays.
+#[inline(always)]
+fn block<R: Request, L: Lanes>(
+    lanes: L,
+    geometry: &Geometry,
+    rays: &[Ray],
+    within: &[Interval],
+    answers: &mut [R::Answer],
+) {
+    let count = rays.len().min(within.len()).min(answers.len());
+    // The rays without company.
+    let mut alone = [0_u16; BLOCK];
+    let mut alone_count = 0;
+    let mut packet = Packet {
+        rays,
+        locals: [LocalRay::EVERYWHERE; PACKET],
+        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default())),
+        active: 0,
+    };
+    for first in (0..count).step_by(PACKET) {
+        let members = first..(first + PACKET).min(count);
+        packet.rays = &rays[members.clone()];
+        packet.active = 0;
+        if !go_together(packet.rays) {
+            for number in members {
+                alone[alone_count] = number as u16;
+                alone_count += 1;
+            }
+            continue;
+        }
+        for (i, number) in members.clone().enumerate() {
+            let (ray, within) = (&rays[number], within[number]);
+            answers[number] = R::nothing();
+            if !is_legal(ray, within) {
+                continue;
+            }
+            let (local, window) = geometry.frame.enter(ray, within);
+            let query = &mut packet.queries[i];
+            *query = R::query(within, window);
+            let seen = geometry.ask_apart(ray, query).is_break();
+            match local {
+                Some(local) if !seen => {
+                    packet.locals[i] = local;
+                    packet.active |= 1 << i;
+                }
+                _ => answers[number] = R::answer(geometry, ray, query),
+            }
+        }
+        let active = packet.active;
+        let places = packet.places();
+        let beam = places.as_ref().and_then(|places| places.beam(geometry.tree.box_size));
+        if let (Some(places), Some(beam)) = (places, beam) {
+            packet.traverse(lanes, geometry, &places, &beam);
+            for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+                answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
+            }
+        } else {
+            for (_, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+                alone[alone_count] = number as u16;
+                alone_count += 1;
+            }
+        }
+    }
+    let mut numbers = alone[..alone_count].iter().map(|&number| usize::from(number));
+    if geometry.tree.bytes() <= CACHE {
+        for number in numbers {
+            answers[number] = R::one(lanes, geometry, &rays[number], within[number]);
+        }
+        return;
+    }
+    // The next ray that has to go down the tree; those before it are answered.
+    let answers = core::cell::RefCell::new(answers);
+    let next = || {
+        for number in numbers.by_ref() {
+            let (ray, within) = (&rays[number], within[number]);
+            let mut nothing = R::nothing();
+            if is_legal(ray, within) {
+                let (local, window) = geometry.frame.enter(ray, within);
+                let mut query = R::query(within, window);
+                let seen = geometry.ask_apart(ray, &mut query).is_break();
+                match local {
+                    Some(local) if !seen => return Some((number, ray, local, query)),
+                    _ => nothing = R::answer(geometry, ray, &query),
+                }
+            }
+            answers.borrow_mut()[number] = nothing;
+        }
+        None
+    };
+    interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
+        answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
+    });
+}
+
+/// A glance whether rays may make a beam: whether the first, the middle and the last have much the same direction.
+/// Only time depends on it.
+#[inline(always)]
+fn go_together(rays: &[Ray]) -> bool {
+    let (Some(first), Some(last), Some(middle)) = (rays.first(), rays.last(), rays.get(rays.len() / 2))
+    else {
+        return false;
+    };
+    let most = first.direction.abs().max_element() * 0.25;
+    let near = |ray: &Ray| (ray.direction - first.direction).abs().max_element() <= most;
+    near(last) && near(middle)
+}
+
+impl Geometry {
+    /// The nearest hit of each ray inside its interval: the same as [`nearest`](Geometry::nearest) for each, faster.
+    ///
+    /// Rays that go side by side should be neighbours in the slice, as the pixels of a row or of a small tile. Works on
+    /// as many rays as the shortest of the three slices has.
+    pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
+        if self.plain {
+            for ((ray, within), found) in rays.iter().zip(within).zip(found) {
+                *found = self.nearest(ray, *within);
+            }
+            return;
+        }
+        vectorize(Batch::<NearestRequest> { geometry: self, rays, within, answers: found });
+    }
+
+    /// Whether anything lies inside the interval of each ray: the same as [`occluded`](Geometry::occluded) for each,
+    /// faster. See [`nearest_many`](Geometry::nearest_many).
+    pub fn occluded_many(&self, rays: &[Ray], within: &[Interval], occluded: &mut [bool]) {
+        if self.plain {
+            for ((ray, within), occluded) in rays.iter().zip(within).zip(occluded) {
+                *occluded = self.occluded(ray, *within);
+            }
+            return;
+        }
+        vectorize(Batch::<AnyRequest> { geometry: self, rays, within, answers: occluded });
+    }
+}

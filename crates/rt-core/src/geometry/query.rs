@@ -1,0 +1,264 @@
+//! What is asked of the shapes that a ray may meet. No answer depends on the order in which they are seen.
+
+use super::frame::Window;
+use super::{Found, Geometry};
+use crate::{Departure, Hit, Interval, Primitive, Ray};
+use core::cmp::Ordering;
+use core::ops::ControlFlow;
+
+/// A question about a ray, answered by showing it shapes.
+pub(super) trait Query {
+    /// Hits from this parameter on do not matter any more.
+    fn limit(&self) -> f64;
+    /// Shows it a shape; breaks when nothing more needs to be seen.
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()>;
+}
+
+/// Which hit is nearest, and whether another object's is too close to be sure.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    within: Interval,
+    end: f64,
+    window: Window,
+    skip: Option<u32>,
+    best: Option<Found>,
+    /// The least parameter of all other objects seen.
+    runner_up: f64,
+}
+
+/// The outcome of [`Nearest`].
+pub(super) enum Ruling {
+    /// Clear, or nothing found.
+    Clear(Option<Found>),
+    /// Several objects were hit within this interval, too close for their order to be sure.
+    Contested(Interval),
+}
+
+impl Nearest {
+    #[inline(always)]
+    pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
+        Nearest { within, end: within.max, window, skip, best: None, runner_up: f64::INFINITY }
+    }
+
+    /// Takes a hit into account.
+    #[inline(always)]
+    pub fn offer(&mut self, object: u32, hit: Hit) {
+        let t = hit.t();
+        match self.best {
+            Some(best) if t >= best.hit.t() => self.runner_up = self.runner_up.min(t),
+            before => {
+                if let Some(before) = before {
+                    self.runner_up = self.runner_up.min(before.hit.t());
+                }
+                self.best = Some(Found { object, hit });
+                self.within.max = self.window.limit(t).min(self.end);
+            }
+        }
+    }
+
+    /// What was found.
+    #[inline(always)]
+    pub fn ruling(&self) -> Ruling {
+        match self.best {
+            Some(_) if self.runner_up < self.within.max => Ruling::Contested(self.within),
+            best => Ruling::Clear(best),
+        }
+    }
+}
+
+impl Query for Nearest {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.skip != Some(object)
+            && let Some(hit) = shape.hit(ray, self.within)
+        {
+            self.offer(object, hit);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Which of the hits within a narrow interval comes first: by refined parameter, then those that leave a solid before
+/// those that enter one, then by index.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contest {
+    within: Interval,
+    skip: Option<u32>,
+    best: Option<(Found, f64, bool)>,
+}
+
+impl Contest {
+    pub fn new(within: Interval, skip: Option<u32>) -> Self {
+        Contest { within, skip, best: None }
+    }
+
+    pub fn offer<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P, hit: Hit) {
+        let surface = shape.surface(ray, hit);
+        let t = if surface.t.is_nan() { hit.t() } else { surface.t };
+        let entering = !(ray.direction.dot(surface.normal) > 0.0);
+        let before = |(best, best_t, best_entering): &(Found, f64, bool)| {
+            let order = t.partial_cmp(best_t).unwrap_or(Ordering::Equal);
+            order.then(entering.cmp(best_entering)).then(object.cmp(&best.object)) == Ordering::Less
+        };
+        if self.best.as_ref().is_none_or(before) {
+            self.best = Some((Found { object, hit }, t, entering));
+        }
+    }
+
+    pub fn winner(&self) -> Option<Found> {
+        self.best.map(|(found, ..)| found)
+    }
+}
+
+impl Query for Contest {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.skip != Some(object)
+            && let Some(hit) = shape.hit(ray, self.within)
+        {
+            self.offer(ray, object, shape, hit);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Whether anything is hit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Any {
+    within: Interval,
+    skip: Option<u32>,
+    pub found: bool,
+}
+
+impl Any {
+    #[inline(always)]
+    pub fn new(within: Interval, skip: Option<u32>) -> Self {
+        Any { within, skip, found: false }
+    }
+}
+
+impl Query for Any {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.skip != Some(object) && shape.hit(ray, self.within).is_some() {
+            self.found = true;
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// What an object does to a ray that asks for a [path](super::Geometry::blocked).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Screen {
+    /// It blocks the ray.
+    Opaque,
+    /// The ray goes on; each crossing is reported.
+    Sheer,
+    /// It is not there.
+    Absent,
+}
+
+/// Whether anything opaque is hit, and what is crossed otherwise.
+pub(super) struct Path<'a> {
+    pub within: Interval,
+    pub skip: Option<u32>,
+    pub screens: &'a [Screen],
+    pub each: &'a mut dyn FnMut(Found),
+    pub blocked: bool,
+}
+
+impl Path<'_> {
+    #[inline(always)]
+    pub fn screen(&self, object: u32) -> Screen {
+        self.screens.get(object as usize).copied().unwrap_or(Screen::Opaque)
+    }
+
+    /// Shows it the shape that the ray leaves.
+    #[inline(always)]
+    pub fn leave(&mut self, geometry: &Geometry, ray: &Ray, from: &Departure) -> ControlFlow<()> {
+        let (object, within) = (from.object, self.within);
+        let Some(shape) = geometry.shapes.get(object as usize) else { return ControlFlow::Continue(()) };
+        match self.screen(object) {
+            Screen::Opaque if shape.hit_leaving(ray, within, from).is_some() => {
+                self.blocked = true;
+                return ControlFlow::Break(());
+            }
+            Screen::Sheer => {
+                shape.crossings_leaving(ray, within, from, &mut |hit| (self.each)(Found { object, hit }));
+            }
+            Screen::Opaque | Screen::Absent => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Query for Path<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.skip == Some(object) {
+            return ControlFlow::Continue(());
+        }
+        match self.screen(object) {
+            Screen::Opaque if shape.hit(ray, self.within).is_some() => {
+                self.blocked = true;
+                return ControlFlow::Break(());
+            }
+            Screen::Sheer => shape.crossings(ray, self.within, &mut |hit| (self.each)(Found { object, hit })),
+            Screen::Opaque | Screen::Absent => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// All crossings, reported one by one.
+pub(super) struct Crossings<'a> {
+    pub within: Interval,
+    pub from: Option<&'a Departure>,
+    pub each: &'a mut dyn FnMut(Found) -> ControlFlow<()>,
+}
+
+impl Query for Crossings<'_> {
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.within.max
+    }
+    #[inline(always)]
+    fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
+        if self.from.is_some_and(|from| from.object == object) {
+            return ControlFlow::Continue(());
+        }
+        report(object, self.each, |each| shape.crossings(ray, self.within, each))
+    }
+}
+
+/// Passes the crossings of one object on until `each` breaks.
+pub(super) fn report(
+    object: u32,
+    each: &mut dyn FnMut(Found) -> ControlFlow<()>,
+    crossings: impl FnOnce(&mut dyn FnMut(Hit)),
+) -> ControlFlow<()> {
+    let mut flow = ControlFlow::Continue(());
+    crossings(&mut |hit| {
+        if flow.is_continue() {
+            flow = each(Found { object, hit });
+        }
+    });
+    flow
+}

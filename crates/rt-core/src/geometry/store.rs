@@ -1,0 +1,142 @@
+//! The shapes by kind, each kind in the order of the leaves: what a ray touches, without the width of [`Shape`].
+
+use super::query::Query;
+use crate::kernel::Lanes;
+use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
+use crate::{Primitive, Ray, Shape};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+/// Consecutive shapes of one kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub kind: u32,
+    pub first: usize,
+    pub count: usize,
+}
+
+/// The shapes of one kind and the objects they belong to.
+#[derive(Clone, Debug)]
+struct Column<P> {
+    shapes: Vec<P>,
+    objects: Vec<u32>,
+}
+
+impl<P> Default for Column<P> {
+    fn default() -> Self {
+        Column { shapes: Vec::new(), objects: Vec::new() }
+    }
+}
+
+impl<P: Primitive> Column<P> {
+    fn push(&mut self, shape: P, object: u32) {
+        self.shapes.push(shape);
+        self.objects.push(object);
+    }
+
+    fn reserve(&mut self, count: usize) {
+        self.shapes = crate::kernel::vec_on_large_pages(count);
+        self.objects = crate::kernel::vec_on_large_pages(count);
+    }
+
+    fn bytes(&self) -> usize {
+        self.shapes.capacity() * size_of::<P>() + self.objects.capacity() * size_of::<u32>()
+    }
+
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, lanes: L, first: usize) {
+        if let (Some(shape), Some(object)) = (self.shapes.get(first), self.objects.get(first)) {
+            lanes.prefetch(shape);
+            lanes.prefetch(object);
+        }
+    }
+
+    #[inline(always)]
+    fn visit<Q: Query>(&self, run: Run, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
+        let range = run.first..run.first + run.count;
+        if let (Some(shapes), Some(objects)) = (self.shapes.get(range.clone()), self.objects.get(range)) {
+            for (shape, &object) in shapes.iter().zip(objects) {
+                query.visit(ray, object, shape)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+macro_rules! store {
+    ($($index:literal $field:ident $kind:ident $type:ty;)*) => {
+        /// All shapes, by kind.
+        #[derive(Clone, Debug, Default)]
+        pub(super) struct Store {
+            $($field: Column<$type>,)*
+        }
+
+        impl Store {
+            /// The number of kinds.
+            pub const KINDS: usize = [$($index),*].len();
+
+            /// The number of the shape's kind.
+            pub fn kind_of(shape: &Shape) -> u32 {
+                match shape {
+                    $(Shape::$kind(_) => $index,)*
+                }
+            }
+
+            /// Makes room for this many shapes of each kind, before any is added.
+            pub fn reserve(&mut self, counts: [usize; Self::KINDS]) {
+                $(self.$field.reserve(counts[$index]);)*
+            }
+
+            /// Adds a shape at the end of its kind.
+            pub fn push(&mut self, shape: &Shape, object: u32) {
+                match shape {
+                    $(Shape::$kind(shape) => self.$field.push(shape.clone(), object),)*
+                }
+            }
+
+            /// The number of shapes of this kind so far.
+            pub fn count(&self, kind: u32) -> usize {
+                match kind {
+                    $($index => self.$field.objects.len(),)*
+                    _ => 0,
+                }
+            }
+
+            /// The bytes of memory in use.
+            pub fn bytes(&self) -> usize {
+                0 $(+ self.$field.bytes())*
+            }
+
+            /// Asks for the memory of the run's first shape.
+            #[inline(always)]
+            pub fn prefetch<L: Lanes>(&self, lanes: L, run: Run) {
+                match run.kind {
+                    $($index => self.$field.prefetch(lanes, run.first),)*
+                    _ => (),
+                }
+            }
+
+            /// Shows the shapes of the run to the query, until it has seen enough.
+            #[inline(always)]
+            pub fn visit<Q: Query>(&self, run: Run, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
+                match run.kind {
+                    $($index => self.$field.visit(run, ray, query),)*
+                    _ => ControlFlow::Continue(()),
+                }
+            }
+        }
+    };
+}
+
+store! {
+    0 spheres Sphere Sphere;
+    1 planes Plane Plane;
+    2 cuboids Cuboid Cuboid;
+    3 cylinders Cylinder Cylinder;
+    4 cones Cone Cone;
+    5 tori Torus Torus;
+    6 disks Disk Disk;
+    7 triangles Triangle Triangle;
+    8 customs Custom Arc<dyn Primitive>;
+}

@@ -1,0 +1,190 @@
+//! A ray against eight boxes: the conservative slab test.
+//!
+//! Box tests run in *kernel coordinates*, in which the scene lies in [-1, 1]: see `geometry::frame`, which makes the
+//! rays. A box test may only cull: it never rejects a box that the exact ray passes through.
+//!
+//! Per axis, the parameters at which the ray enters and leaves the slab are `(x - o) / d`. The origin is known as
+//! `o +- e` with `e >= 2^-97`, the direction `d` is exact, `max |d_i|` lies in [1, 2). In `f32`, with v = 2^-24:
+//! - The reciprocal is rounded to `f32` after it was made smaller (entry) or larger (exit) in magnitude by the factor
+//!   1 -+ 2^-22 = 1 -+ 4 v. That outweighs its own rounding, and those of the difference and of the product, 3 v
+//!   together. It works in the wrong direction only where the parameter is negative, hence behind the start: there
+//!   the entry counts as 0 anyway, and an exit keeps its sign.
+//! - With fused multiply-add, the test is `x * r - c` with `c = o * r` moved outward by `e * |r|` and rounded outward:
+//!   exact but for one rounding. Without, it is `(x - o') * r` with `o' = o -+ e` rounded outward. What these sums and
+//!   products lose in f64 is far less than the step outward.
+//! - Results below the normal range err by 2^-150 at most, far less than `e * |r| >= 2^-98` moved them.
+//! - An axis with `|d_i| < 2^-100` is treated as `2^-100`. Within the scene a parameter is at most about 2, so this
+//!   moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if `o +- e` lies
+//!   outside, else its exit is at least `2^-98 * 2^100 = 4`, beyond the scene.
+//! - A NaN (infinities cancel) is passed over by `max` and `min`: the box is kept.
+
+use super::Lanes;
+use glam::DVec3;
+
+/// Eight boxes: the rows are min x, min y, min z, max x, max y, max z.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct Boxes {
+    rows: [[f32; 8]; 6],
+}
+
+impl Boxes {
+    /// Eight boxes that no ray meets.
+    pub const EMPTY: Boxes = Boxes {
+        rows: [
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+        ],
+    };
+
+    /// Sets the box in this lane; nothing for a lane beyond the seventh.
+    pub fn set(&mut self, lane: usize, min: [f32; 3], max: [f32; 3]) {
+        for (row, value) in self.rows.iter_mut().zip(min.into_iter().chain(max)) {
+            if let Some(place) = row.get_mut(lane) {
+                *place = value;
+            }
+        }
+    }
+
+    /// The corners of the box in this lane, taken modulo 8.
+    #[inline(always)]
+    pub fn corners(&self, lane: usize) -> ([f32; 3], [f32; 3]) {
+        let lane = lane & 7;
+        let [a, b, c, d, e, f] = &self.rows;
+        ([a[lane], b[lane], c[lane]], [d[lane], e[lane], f[lane]])
+    }
+
+    /// One of the six rows.
+    #[inline(always)]
+    pub fn row(&self, row: Row) -> &[f32; 8] {
+        // SAFETY: a `Row` is below 6 by construction.
+        unsafe { self.rows.get_unchecked(row.0 as usize) }
+    }
+}
+
+/// The index of a row of [`Boxes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row(u8);
+
+impl Row {
+    /// The row of least coordinates on this axis, 0 to 2 (taken modulo 3).
+    #[inline(always)]
+    pub const fn min(axis: usize) -> Row {
+        Row((axis % 3) as u8)
+    }
+
+    /// The row of greatest coordinates on this axis, 0 to 2 (taken modulo 3).
+    #[inline(always)]
+    pub const fn max(axis: usize) -> Row {
+        Row((axis % 3) as u8 + 3)
+    }
+}
+
+/// The greatest `f32` that is at most `x`.
+#[inline(always)]
+pub fn round_down(x: f64) -> f32 {
+    let y = x as f32;
+    if y as f64 > x { y.next_down() } else { y }
+}
+
+/// The least `f32` that is at least `x`; NaN for NaN.
+#[inline(always)]
+pub fn round_up(x: f64) -> f32 {
+    let y = x as f32;
+    if (y as f64) < x { y.next_up() } else { y }
+}
+
+/// What a rounding to `f32` can lose, twice.
+const STEP: f64 = crate::math::exp2i(-23);
+
+/// An `f32` that is at least `x` and not much more, without branches; for `x` above the subnormal numbers.
+#[inline(always)]
+pub fn at_least(x: f64) -> f32 {
+    (x + x.abs() * STEP) as f32
+}
+
+/// A ray ready for the slab test.
+#[derive(Clone, Copy, Debug)]
+pub struct SlabRay<L: Lanes> {
+    near: [Row; 3],
+    far: [Row; 3],
+    near_factor: [L::F; 3],
+    near_offset: [L::F; 3],
+    far_factor: [L::F; 3],
+    far_offset: [L::F; 3],
+}
+
+impl<L: Lanes> SlabRay<L> {
+    /// The ray that starts within `error` of `origin`.
+    ///
+    /// Without branches: rounded to nearest after a step outward of 2^-23, twice what that can lose.
+    #[inline(always)]
+    pub fn new(lanes: L, origin: DVec3, error: DVec3, direction: DVec3) -> Self {
+        const LEAST: f64 = crate::math::exp2i(-100);
+        const SLACK: f64 = crate::math::exp2i(-22);
+        let four = |v: DVec3| [v.x, v.y, v.z, 1.0];
+        let (o, e) = (four(origin), four(error));
+        let d = four(direction).map(|d| (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d));
+        let inverse = d.map(|d| 1.0 / d);
+        let near = inverse.map(|r| (r * (1.0 - SLACK)) as f32);
+        let far = inverse.map(|r| (r * (1.0 + SLACK)) as f32);
+        let step = |x: f64| x.abs() * STEP;
+        let (near_offset, far_offset): ([f32; 4], [f32; 4]) = if L::FUSED {
+            // An offset is subtracted: a greater one makes the parameter smaller.
+            let near_offset = core::array::from_fn(|i| {
+                let (factor, size) = (f64::from(near[i]), f64::from(near[i].abs()));
+                (o[i] * factor + (e[i] * size + step(o[i] * factor))) as f32
+            });
+            let far_offset = core::array::from_fn(|i| {
+                let (factor, size) = (f64::from(far[i]), f64::from(far[i].abs()));
+                (o[i] * factor - (e[i] * size + step(o[i] * factor))) as f32
+            });
+            (near_offset, far_offset)
+        } else {
+            // Forward, the origin counts as further on for the entry and as further back for the exit.
+            let outward = |i: usize| (e[i] + step(o[i])).copysign(d[i]);
+            (
+                core::array::from_fn(|i| (o[i] + outward(i)) as f32),
+                core::array::from_fn(|i| (o[i] - outward(i)) as f32),
+            )
+        };
+        let row = |axis: usize, least: bool| if least { Row::min(axis) } else { Row::max(axis) };
+        SlabRay {
+            near: core::array::from_fn(|axis| row(axis, d[axis] > 0.0)),
+            far: core::array::from_fn(|axis| row(axis, d[axis] < 0.0)),
+            near_factor: core::array::from_fn(|axis| lanes.splat(near[axis])),
+            near_offset: core::array::from_fn(|axis| lanes.splat(near_offset[axis])),
+            far_factor: core::array::from_fn(|axis| lanes.splat(far[axis])),
+            far_offset: core::array::from_fn(|axis| lanes.splat(far_offset[axis])),
+        }
+    }
+
+    /// The boxes that the ray may meet between 0 and `limit`, one bit each, and where it enters them (at least +0).
+    #[inline(always)]
+    pub fn test(&self, lanes: L, boxes: &Boxes, limit: L::F) -> (u32, L::F) {
+        let mut entry = lanes.splat(0.0);
+        let mut exit = limit;
+        for axis in 0..3 {
+            let near = lanes.load(boxes.row(self.near[axis]));
+            let far = lanes.load(boxes.row(self.far[axis]));
+            let (near, far) = if L::FUSED {
+                (
+                    lanes.mul_sub(near, self.near_factor[axis], self.near_offset[axis]),
+                    lanes.mul_sub(far, self.far_factor[axis], self.far_offset[axis]),
+                )
+            } else {
+                (
+                    lanes.mul(lanes.sub(near, self.near_offset[axis]), self.near_factor[axis]),
+                    lanes.mul(lanes.sub(far, self.far_offset[axis]), self.far_factor[axis]),
+                )
+            };
+            entry = lanes.max(near, entry);
+            exit = lanes.min(far, exit);
+        }
+        (lanes.le(entry, exit), entry)
+    }
+}

@@ -1,0 +1,156 @@
+//! Several rays against one box, and a beam that holds them against eight.
+
+use super::{Boxes, Lanes, Row};
+
+/// Eight rays side by side against one box.
+///
+/// Per axis, `((x -+ pad) - o) * r` with `o` and `d` rounded to nearest; `pad` is at least 2^-22 of the largest
+/// |coordinate| of the origins and the scene (1), plus the error radius, so that it outweighs the roundings of `o` and
+/// of the difference (3 * 2^-24). Those of `d`, `r = 1 / d` and the product, 3 * 2^-24 of the parameter, are outweighed
+/// by a factor of 1 -+ 2^-22 on entry and exit. Either end of a slab may come first: rays of all signs go side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct EightRays {
+    origin: [[f32; 8]; 3],
+    inverse: [[f32; 8]; 3],
+}
+
+impl EightRays {
+    /// The rays with these origins and directions, by axis, beginning at `first`.
+    #[inline(always)]
+    pub fn new<const N: usize>(origin: &[[f64; N]; 3], direction: &[[f64; N]; 3], first: usize) -> Self {
+        const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
+        let mut rays = EightRays { origin: [[0.0; 8]; 3], inverse: [[1.0; 8]; 3] };
+        for axis in 0..3 {
+            let (o, d) = (&origin[axis][first..], &direction[axis][first..]);
+            for (lane, (o, d)) in o.iter().zip(d).take(8).enumerate() {
+                let d = *d as f32;
+                rays.origin[axis][lane] = *o as f32;
+                rays.inverse[axis][lane] = 1.0 / (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
+            }
+        }
+        rays
+    }
+
+    /// The rays that may meet the box, grown by `pad`, between 0 and their limit.
+    #[inline(always)]
+    pub fn test<L: Lanes>(&self, lanes: L, min: [f32; 3], max: [f32; 3], pad: f32, limit: &[f32; 8]) -> u32 {
+        const SLACK: f32 = 1.0 / 4_194_304.0;
+        let mut entry = lanes.splat(0.0);
+        let mut exit = lanes.splat(f32::INFINITY);
+        for axis in 0..3 {
+            let origin = lanes.load(&self.origin[axis]);
+            let inverse = lanes.load(&self.inverse[axis]);
+            let a = lanes.mul(lanes.sub(lanes.splat(min[axis] - pad), origin), inverse);
+            let b = lanes.mul(lanes.sub(lanes.splat(max[axis] + pad), origin), inverse);
+            entry = lanes.max(lanes.min(a, b), entry);
+            exit = lanes.min(lanes.max(a, b), exit);
+        }
+        let entry = lanes.mul(entry, lanes.splat(1.0 - SLACK));
+        let exit = lanes.min(lanes.mul(exit, lanes.splat(1.0 + SLACK)), lanes.load(limit));
+        lanes.le(entry, exit)
+    }
+}
+
+/// All rays of a packet at once: what they pass, at each depth along an axis they share, is an interval on either
+/// other axis.
+///
+/// With `z` the depth from a common plane, every ray is at `x = c + s z` with `c` and `s` in known intervals (both other
+/// axes alike). Over a box's range of depth, the least and the greatest `x` lie at its ends, which one the sign of the
+/// slope tells.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam<L: Lanes> {
+    near: Row,
+    far: Row,
+    sign: L::F,
+    near_plane: L::F,
+    far_plane: L::F,
+    sides: [BeamSide<L>; 2],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct BeamSide<L: Lanes> {
+    min: Row,
+    max: Row,
+    low: L::F,
+    low_slope: L::F,
+    low_at_near: bool,
+    high: L::F,
+    high_slope: L::F,
+    high_at_near: bool,
+}
+
+/// The numbers of a [`Beam`], as `f64`.
+#[derive(Clone, Copy, Debug)]
+pub struct BeamShape {
+    /// The axis of depth, 0 to 2.
+    pub axis: usize,
+    /// +1 or -1: the sign of the direction there.
+    pub sign: f64,
+    /// The depth's zero on that axis.
+    pub plane: f64,
+    /// For the next axis and the one after: least and greatest position at depth zero.
+    pub position: [[f64; 2]; 2],
+    /// The same for the change of position with depth.
+    pub slope: [[f64; 2]; 2],
+    /// The error radius of all these positions.
+    pub error: f64,
+}
+
+impl<L: Lanes> Beam<L> {
+    /// The beam, moved outward by all that the test can lose: the depths round by 2^-23 of the largest depth `z` (the
+    /// scene ends at 1), their products with slopes by 2^-24 more, and the sums by 2^-24 of `|c| + |s| z`. Altogether
+    /// less than 2^-22 (|s| z + |c|) in position; slopes are moved outward by 2^-22 of themselves.
+    #[inline(always)]
+    pub fn new(lanes: L, shape: &BeamShape) -> Self {
+        const SLACK: f64 = crate::math::exp2i(-22);
+        let depth = shape.plane.abs() + 1.0;
+        let side = |i: usize| {
+            let axis = shape.axis + 1 + i;
+            let ([low, high], [low_slope, high_slope]) = (shape.position[i], shape.slope[i]);
+            let most = |a: f64, b: f64| if a.abs() > b.abs() { a.abs() } else { b.abs() };
+            let slope = most(low_slope, high_slope);
+            let pad = (slope * depth + most(low, high)) * (2.0 * SLACK) + shape.error * (1.0 + slope);
+            BeamSide {
+                min: Row::min(axis),
+                max: Row::max(axis),
+                low: lanes.splat((low - pad) as f32),
+                low_slope: lanes.splat((low_slope - slope * SLACK) as f32),
+                low_at_near: low_slope - slope * SLACK >= 0.0,
+                high: lanes.splat((high + pad) as f32),
+                high_slope: lanes.splat((high_slope + slope * SLACK) as f32),
+                high_at_near: high_slope + slope * SLACK < 0.0,
+            }
+        };
+        let plane = shape.plane * shape.sign;
+        let pad = depth * SLACK + shape.error;
+        let forward = shape.sign > 0.0;
+        Beam {
+            near: if forward { Row::min(shape.axis) } else { Row::max(shape.axis) },
+            far: if forward { Row::max(shape.axis) } else { Row::min(shape.axis) },
+            sign: lanes.splat(shape.sign as f32),
+            near_plane: lanes.splat((plane + pad) as f32),
+            far_plane: lanes.splat((plane - pad) as f32),
+            sides: [side(0), side(1)],
+        }
+    }
+
+    /// The boxes that the beam may meet between the depths 0 and `limit`, one bit each, and their least depths (at
+    /// least +0).
+    #[inline(always)]
+    pub fn test(&self, lanes: L, boxes: &Boxes, limit: L::F) -> (u32, L::F) {
+        let near = lanes.mul_sub(lanes.load(boxes.row(self.near)), self.sign, self.near_plane);
+        let far = lanes.mul_sub(lanes.load(boxes.row(self.far)), self.sign, self.far_plane);
+        let near = lanes.max(near, lanes.splat(0.0));
+        let far = lanes.min(far, limit);
+        let mut mask = lanes.le(near, far);
+        for side in &self.sides {
+            let low_depth = if side.low_at_near { near } else { far };
+            let high_depth = if side.high_at_near { near } else { far };
+            let low = lanes.add(lanes.mul(side.low_slope, low_depth), side.low);
+            let high = lanes.add(lanes.mul(side.high_slope, high_depth), side.high);
+            mask &= lanes.le(low, lanes.load(boxes.row(side.max)));
+            mask &= lanes.le(lanes.load(boxes.row(side.min)), high);
+        }
+        (mask, near)
+    }
+}

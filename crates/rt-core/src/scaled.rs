@@ -1,0 +1,228 @@
+//! Rays in a shape's own scale: exact powers of two that keep every product in range.
+
+use crate::Error;
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::math::{exp2i, exponent};
+use crate::{Hit, Interval, Ray};
+use glam::DVec3;
+
+/// `x * 2^k`, rounded once unless the result is subnormal, for any `|k| <= 3000`.
+#[inline]
+pub(crate) fn times_power(x: f64, k: i32) -> f64 {
+    let k = k.clamp(-3000, 3000);
+    if k.abs() <= 1000 {
+        return x * exp2i(k);
+    }
+    let step = if k > 0 { 1000 } else { -1000 };
+    times_power(x * exp2i(step), k - step)
+}
+
+/// A ray relative to a shape's anchor, in units of a power of two: `relative + t * direction`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScaledRay {
+    /// The origin minus the anchor, exactly, in units of `2^exponent` of the shape.
+    pub relative: DoubleVector,
+    /// The direction, its largest component in `[1, 2)`.
+    pub direction: DVec3,
+    /// `t` in the units of the given ray is `2^power` times the `t` here.
+    pub power: i32,
+}
+
+impl ScaledRay {
+    /// `None` for a ray that is not valid, or that starts more than 2^900 units away: no `f64` ray aims that well.
+    ///
+    /// `unit` is the exponent of the shape's size, in `-600..=600`.
+    #[inline(always)]
+    pub fn new(ray: &Ray, anchor: DVec3, unit: i32) -> Option<ScaledRay> {
+        let mut direction = ray.direction;
+        let mut shift = exponent(largest(direction));
+        if shift < -1000 {
+            // Subnormal components: first into the range where the exponent can be read.
+            direction *= exp2i(200);
+            shift = exponent(largest(direction));
+            if shift == -1023 {
+                return None;
+            }
+            direction *= exp2i(-shift);
+            shift -= 200;
+        } else if shift < 1024 {
+            // In two steps, since 2^-1023 is not a normal number.
+            let half = shift / 2;
+            direction = direction * exp2i(-half) * exp2i(half - shift);
+        } else {
+            return None;
+        }
+        // Components below 2^-160 of the largest turn the ray by less than any margin that f64 can express; without
+        // them all products stay in the range where they are exact.
+        let negligible = exp2i(-160);
+        let keep = |x: f64| if x.abs() < negligible { 0.0 } else { x };
+        let direction = DVec3::new(keep(direction.x), keep(direction.y), keep(direction.z));
+        let relative = DoubleVector::difference(ray.origin, anchor).scale_exact(exp2i(-unit));
+        // False for NaN too.
+        if !(largest(relative.high()) < exp2i(900)) || !relative.high().is_finite() {
+            return None;
+        }
+        Some(ScaledRay { relative, direction, power: unit - shift })
+    }
+
+    /// A parameter here in the units of the given ray.
+    #[inline(always)]
+    pub fn unscale(&self, t: Double) -> Double {
+        if self.power == 0 {
+            return t;
+        }
+        Double { high: times_power(t.high, self.power), low: times_power(t.low, self.power) }
+    }
+}
+
+/// The largest absolute value of the components.
+#[inline(always)]
+pub(crate) fn largest(v: DVec3) -> f64 {
+    let v = v.abs();
+    let m = if v.x >= v.y { v.x } else { v.y };
+    if m >= v.z { m } else { v.z }
+}
+
+/// Lengths and coordinates up to this are accepted: the promised 1e150 and a margin.
+const LARGEST: f64 = exp2i(520);
+/// Positive lengths down to this are accepted: the promised 1e-150 and a margin.
+const SMALLEST: f64 = exp2i(-520);
+
+/// Checks a length that must be positive, finite and in range.
+pub(crate) fn checked_length(what: &'static str, value: f64) -> Result<f64, Error> {
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(Error::NotPositive { what, value });
+    }
+    if !(SMALLEST..=LARGEST).contains(&value) {
+        return Err(Error::OutOfRange { what, value });
+    }
+    Ok(value)
+}
+
+/// Checks a point: finite and in range.
+pub(crate) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, Error> {
+    if !value.is_finite() {
+        return Err(Error::NotFinite { what, value });
+    }
+    if largest(value) > LARGEST {
+        return Err(Error::OutOfRange { what, value: largest(value) });
+    }
+    Ok(value)
+}
+
+/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it.
+#[inline(always)]
+pub(crate) fn admit(within: Interval, t: Double, part: u32, root: u32) -> Option<Hit> {
+    // `t` against an end: exact, since `high` is the nearest number to the sum.
+    let after = t.high > within.min || (t.high == within.min && t.low > 0.0);
+    let before = t.high < within.max || (t.high == within.max && t.low < 0.0);
+    if after && before { within.admit(t.high, part, root) } else { None }
+}
+
+/// The exit of a ray that starts on the shape and runs inside: a crossing at or before the start is the start's
+/// own rounding and counts as the next number after the start.
+#[inline]
+pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Option<Hit> {
+    let t = if t > 0.0 { t } else { 0.0 };
+    within.admit(if t > within.min { t } else { within.min.next_up() }, part, root)
+}
+
+/// The error radius of a point that was rounded once from a place known to `along`.
+///
+/// The rounding errs by at most u = 2^-53 of each coordinate, hence u `|point|` in all (and 2^-1074 where that
+/// is subnormal).
+#[inline(always)]
+pub(crate) fn error_radius(point: DVec3, along: f64) -> f64 {
+    // sqrt(3) < 1.75, and an ulp of slack.
+    largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4) + along
+}
+
+/// How far a place found from a discriminant in double-double can be from the true one, in units of the shape's
+/// size.
+///
+/// It errs by the error of the discriminant, at most 2^-99, over twice its root `half`; where the discriminant
+/// itself is below its error, by the root of that.
+#[inline(always)]
+pub(crate) fn uncertainty(half: f64) -> f64 {
+    let along = exp2i(-100) / half;
+    if along < exp2i(-49) { along } else { exp2i(-49) }
+}
+
+/// Whether a direction needs no scaling: its square is moderate, and no component is one of those that
+/// [`ScaledRay::new`] leaves out.
+#[inline(always)]
+pub(crate) fn is_plain(d: DVec3) -> bool {
+    let least = largest(d) * exp2i(-160);
+    let kept = |x: f64| (x.abs() >= least) | (x == 0.0);
+    moderate(d.dot(d)) & kept(d.x) & kept(d.y) & kept(d.z)
+}
+
+/// The discriminant must exceed this many times the bound of its error before a crossing found in `f64` is taken.
+///
+/// Any number well above 1 makes the decision certain. A parameter is then wrong by at most 2^-15 of half the chord,
+/// and a ray that grazes a sphere at a depth of 2^-33 radii from a few sizes away is still clear.
+pub(crate) const CLEAR: f64 = exp2i(14);
+
+/// The margin of a parameter in units of half the chord, for a discriminant more than [`CLEAR`] times the bound of its
+/// error: eight times the error for one that exceeds it just so, and small for nearly all, so that it seldom matters.
+#[inline(always)]
+pub(crate) fn margin(depth: f64, doubt: f64) -> f64 {
+    if depth > exp2i(20) * doubt { exp2i(-19) } else { exp2i(-13) }
+}
+
+/// A crossing found in `f64`: its parameter is wrong by less than `margin`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate {
+    pub t: f64,
+    pub margin: f64,
+    pub part: u32,
+    pub root: u32,
+}
+
+impl Candidate {
+    /// The hit, or `None`, where that is certain; otherwise `exact` decides.
+    #[inline(always)]
+    pub fn decide(&self, within: Interval, exact: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
+        let Candidate { t, margin, .. } = *self;
+        if t - within.min > margin && within.max - t > margin {
+            within.admit(t, self.part, self.root)
+        } else if within.min - t > margin || t - within.max > margin || t == within.min || t == within.max {
+            // An end with these very bits is where this crossing was reported before: it is not reported twice.
+            None
+        } else {
+            exact()
+        }
+    }
+
+    /// The same crossing in a unit of the parameter that is `2^-power` times as large.
+    pub fn unscale(self, power: i32) -> Candidate {
+        Candidate { t: times_power(self.t, power), margin: times_power(self.margin, power), ..self }
+    }
+}
+
+/// What `f64` arithmetic can say about a line and a convex shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Rough {
+    /// No crossing, certainly.
+    Miss,
+    /// These two crossings, certainly.
+    Span([Candidate; 2]),
+    /// It takes more digits to tell.
+    Doubt,
+}
+
+/// Whether a sum of squares is far from under- and overflow: in `2^-400..2^400`. False for NaN.
+#[inline(always)]
+pub(crate) fn moderate(square: f64) -> bool {
+    // One comparison: the bits of positive numbers are ordered like the numbers.
+    const LEAST: u64 = exp2i(-400).to_bits();
+    square.to_bits().wrapping_sub(LEAST) < exp2i(400).to_bits() - LEAST
+}
+
+/// Zero, or NaN for a length whose square is near under- or overflow: added to a bound of errors, it leaves every
+/// decision in doubt, until the ray is rescaled.
+#[inline]
+pub(crate) fn range_guard(length: f64) -> f64 {
+    if length > exp2i(-200) && length < exp2i(200) { 0.0 } else { f64::NAN }
+}

@@ -1,0 +1,168 @@
+//! The full record of a hit, refined in double-double.
+
+use super::line::{FindLine, quotient};
+use super::{BASE, Frustum, TOP};
+use crate::double::Double;
+use crate::double_vector::DoubleVector;
+use crate::kernel::{self, Product, Task};
+use crate::math::{exp2i, sqrt};
+use crate::scaled::{ScaledRay, error_radius, largest, times_power, uncertainty};
+use crate::surface::Coordinates;
+use crate::{Hit, Ray, Surface};
+use glam::{DVec2, DVec3};
+
+impl Frustum {
+    /// See [`Primitive::surface`](crate::Primitive::surface).
+    pub fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
+        let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else {
+            return Surface::new(hit.t(), self.base, DVec3::ZERO, self.axis.high(), 0.0);
+        };
+        let found = kernel::run(FindSurface { frustum: self, ray: &scaled, hit });
+        let scale = exp2i(self.unit);
+        let local = found.local.scale_exact(scale);
+        let point = local.plus_f64(self.base);
+        let at = found.local.high();
+        let (x, y) = (at.dot(self.first), at.dot(self.second));
+        let v = match hit.part() {
+            BASE => 0.0,
+            TOP => 1.0,
+            _ => (found.z / self.height.high).clamp(0.0, 1.0),
+        };
+        Surface::new(
+            scaled.unscale(found.t).high,
+            point,
+            local.high(),
+            found.normal,
+            error_radius(point, scale * found.error),
+        )
+        .with_coordinates(Coordinates::Side(DVec2::new(x, y), v))
+        .with_object_point(DVec3::new(x, y, found.z) * scale)
+    }
+}
+
+struct FindSurface<'a> {
+    frustum: &'a Frustum,
+    ray: &'a ScaledRay,
+    hit: Hit,
+}
+
+struct Refined {
+    t: Double,
+    local: DoubleVector,
+    normal: DVec3,
+    z: f64,
+    /// How far the true crossing can be from `local`.
+    error: f64,
+}
+
+impl Task for FindSurface<'_> {
+    type Output = Refined;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Refined {
+        if let Some(found) = self.newton::<P>() {
+            return found;
+        }
+        let FindSurface { frustum: f, ray, hit } = self;
+        let line = FindLine { frustum: f, ray }.run::<P>();
+        let at = match hit.part() {
+            BASE => quotient::<P>(-line.z, line.z_growth),
+            TOP => quotient::<P>(line.height - line.z, line.z_growth),
+            _ => line.side[(hit.root() & 1) as usize],
+        };
+        // A hit of another ray, or one that rounding invented: the closest approach is the nearest to it.
+        let at = if at.high.is_finite() { at } else { Double::ZERO };
+        let mut local = line.start + DoubleVector::from(ray.direction).mul::<P>(at);
+        let t = line.shift + at;
+        if hit.part() == BASE || hit.part() == TOP {
+            let axis = f.axis.high();
+            let (normal, z) = if hit.part() == BASE { (-axis, 0.0) } else { (axis, f.height.high) };
+            return Refined { t, local, normal, z, error: uncertainty(line.z_growth.high.abs()) };
+        }
+        let z = f.axis.dot::<P>(local);
+        let along = f.axis.mul::<P>(z);
+        let away = local - along;
+        let distance = away.length_squared::<P>().sqrt::<P>();
+        let outward = if distance.high > 0.0 {
+            away.mul::<P>(Double::ONE.div::<P>(distance))
+        } else {
+            // On the axis, at the apex: there is no direction away from it.
+            DoubleVector::default()
+        };
+        if line.depth.high <= 0.0 && line.a.high >= 0.0 {
+            // The rounded ray misses: take the place on the surface beside it.
+            let radius = f.slope.mul::<P>(z) + f.base_radius * exp2i(-f.unit);
+            local = along + outward.mul::<P>(radius);
+        }
+        let mut normal = (outward.mul::<P>(f.radial) + f.axis.mul::<P>(f.axial)).high();
+        if distance.high <= 0.0 {
+            normal = if f.axial.high < 0.0 { -f.axis.high() } else { f.axis.high() };
+        }
+        let half = if line.depth.high > 0.0 { sqrt(line.depth.high) } else { 0.0 };
+        Refined { t, local, normal, z: z.high, error: uncertainty(half) }
+    }
+}
+
+impl FindSurface<'_> {
+    /// One or two Newton steps from the hit's parameter; `None` where they may not be enough.
+    ///
+    /// In units of the frustum's size, the place `p` is known to 2^-104 of the distance S that the ray comes from, and
+    /// the residual of the side with its factor 2 (1 + |k|) and the roundings to 2^-100 S while the slope k is below
+    /// 2^3; that moves the crossing by 2^-101 S over half the derivative, q: by less than 2^-72 for `q > 2^-28 S`. A
+    /// step s leaves `s^2 A / (2 q)`, and what the rounding of q, below 2^-47, does to it, `2^-47 s / q`: for
+    /// `s A < 2^-36 q` and `s < 2^-36 q` less than 2^-73 q and 2^-83. A cap is the same without curvature.
+    #[inline(always)]
+    fn newton<P: Product>(&self) -> Option<Refined> {
+        let FindSurface { frustum: f, ray, hit } = self;
+        let d = ray.direction;
+        let far = largest(ray.relative.high()) + 1.0;
+        let axis = f.axis.high();
+        let z_growth = axis.dot(d);
+        let error = exp2i(-70);
+        let mut t = Double::from(times_power(hit.t(), -ray.power));
+        if hit.part() == BASE || hit.part() == TOP {
+            let (normal, height) = if hit.part() == BASE { (-axis, Double::ZERO) } else { (axis, f.height) };
+            if !(z_growth.abs() > exp2i(-20) * far) {
+                return None;
+            }
+            let p = ray.relative.advanced::<P>(d, t);
+            let change = (height - f.axis.dot::<P>(p)).high / z_growth;
+            if !(change.abs() < exp2i(-42) * z_growth.abs()) {
+                return None;
+            }
+            t = Double::sum(t.high, change);
+            return Some(Refined { t, local: p.nudged(d, change), normal, z: height.high, error });
+        }
+        // A parameter far below the size asks for more digits of the place than the size does.
+        if !(f.slope.high.abs() < 8.0 && t.high.abs() > exp2i(-8)) {
+            return None;
+        }
+        let across = d - axis * z_growth;
+        let e1 = f.slope.high * z_growth;
+        let curvature = (across.dot(across) - e1 * e1).abs();
+        let side = if hit.root() & 1 == 0 { -1.0 } else { 1.0 };
+        let base_radius = f.base_radius * exp2i(-f.unit);
+        for _ in 0..2 {
+            let p = ray.relative.advanced::<P>(d, t);
+            let z = f.axis.dot::<P>(p);
+            let away = p - f.axis.mul::<P>(z);
+            let radius = f.slope.mul::<P>(z) + base_radius;
+            let q = side * (away.high().dot(across) - radius.high * e1);
+            if !(q > exp2i(-28) * far && radius.high > exp2i(-16)) {
+                return None;
+            }
+            let excess = away.length_squared::<P>() - radius.square::<P>();
+            let change = -side * (excess.high / (2.0 * q));
+            t = Double::sum(t.high, t.low + change);
+            let size = change.abs();
+            if size * curvature < exp2i(-36) * q && size < exp2i(-36) * q {
+                let away = away.nudged(across, change);
+                let radius = radius + e1 * change;
+                let part = f.radial.div::<P>(radius);
+                let normal = (away.mul::<P>(part) + f.axis.mul::<P>(f.axial)).high();
+                let z = (z + z_growth * change).high;
+                return Some(Refined { t, local: p.nudged(d, change), normal, z, error });
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,334 @@
+//! Where a ray meets a plane, exactly, and the record that a flat shape makes of it.
+//!
+//! The plane through `anchor` across `normal` is met at `t = N / D` with `N = normal . (anchor - origin)` and
+//! `D = normal . direction`. The normal need not have unit length, so a given one enters as the exact numbers it is.
+//! Differences are kept as exact sums of two `f64`; `N` and `D` are sums in double-double with a bound on their error.
+//! Where that is too large they are exact sums. Rays that leave a middle range of numbers are scaled by powers of two
+//! first, so neither 1e-150 nor 1e150 loses a digit.
+
+use super::flat::{U, cross, doubles, power_of, prescaled};
+use crate::double::{Double, fast_two_sum, two_difference, two_sum};
+use crate::expansion::Expansion;
+use crate::kernel::{Product, Task, run};
+use crate::math::exp2i;
+use crate::scaled::{largest, times_power};
+use crate::{Hit, Ray, Surface};
+use glam::{DVec2, DVec3};
+
+/// A plane as the refinement needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExactPlane {
+    /// A point of the plane.
+    pub(super) anchor: DVec3,
+    /// The normal, of a length near 1, within 2^-104 of each component.
+    pub(super) normal: [Double; 3],
+    /// The world axis, 0 to 2, that the normal lies along exactly.
+    pub(super) axis: Option<u8>,
+    /// The distance of the plane from the anchor along the normal, in lengths of the normal.
+    pub(super) offset: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting {
+    /// The parameter, correctly rounded.
+    pub(super) t: f64,
+    /// The point minus the anchor, in units of `2^power`.
+    pub(super) local: [Double; 3],
+    /// The unit of `local`.
+    pub(super) power: i32,
+    /// A bound on the error of each coordinate of `local`, in the same unit.
+    pub(super) error: f64,
+}
+
+impl Meeting {
+    /// The point minus the anchor, each coordinate rounded once.
+    #[inline(always)]
+    pub(super) fn local(&self) -> DVec3 {
+        let scale = exp2i(self.power);
+        DVec3::from_array(self.local.map(|x| x.to_f64() * scale))
+    }
+
+    /// The world point, each coordinate rounded once.
+    #[inline(always)]
+    pub(super) fn point(&self, anchor: DVec3) -> DVec3 {
+        let scale = exp2i(self.power);
+        let sum = |x: Double, a: f64| {
+            let (s, e) = two_sum(x.high * scale, a);
+            s + (e + x.low * scale)
+        };
+        let [x, y, z] = self.local;
+        DVec3::new(sum(x, anchor.x), sum(y, anchor.y), sum(z, anchor.z))
+    }
+
+    /// The lengths of `local` along the two texture axes of a plane, which are world axes when its normal is one.
+    #[inline(always)]
+    pub(super) fn along<P: Product>(&self, axes: &[DVec3; 2], normal: Option<u8>) -> DVec2 {
+        let local = self.local();
+        match normal {
+            Some(0) => DVec2::new(local.y, local.z),
+            Some(1) => DVec2::new(local.x, local.z),
+            Some(_) => DVec2::new(local.x, local.y),
+            None => {
+                let length = |axis: DVec3| dot::<P>(&self.local, &doubles(axis), 0.0).0.to_f64();
+                DVec2::new(length(axes[0]), length(axes[1])) * exp2i(self.power)
+            }
+        }
+    }
+
+    /// The error radius of a world point made by [`point`](Meeting::point).
+    ///
+    /// Each coordinate of the point is within half a unit in the last place, `u |p_i|`, and moving the start of a
+    /// ray by the radius rounds once more by as much; `1 + 16 u` pays for the roundings of this sum. The error of
+    /// `local` itself comes on top, once for each coordinate.
+    #[inline(always)]
+    pub(super) fn error_radius(&self, point: DVec3) -> f64 {
+        let a = point.abs();
+        (2.0 * U * (1.0 + 16.0 * U)) * (a.x + a.y + a.z)
+            + 3.0 * self.error * exp2i(self.power)
+            + f64::from_bits(8)
+    }
+}
+
+/// A flat piece of a surface: what [`surface`] needs to make the full record of a hit.
+pub(super) trait Piece {
+    /// Its plane.
+    fn plane(&self) -> ExactPlane;
+    /// The prescaled normal without any rounding, for the rays that need it.
+    fn exact_normal(&self) -> [Expansion; 3];
+    /// The record, from the place in the plane.
+    fn record<P: Product>(&self, at: &Meeting) -> Surface;
+    /// The record for a ray that runs parallel to the plane: only for a ray that the piece gave no hit for.
+    fn parallel(&self, ray: &Ray, hit: Hit) -> Surface;
+}
+
+/// The record of a hit of a piece.
+#[inline(always)]
+pub(super) fn surface(piece: &impl Piece, ray: &Ray, hit: Hit) -> Surface {
+    run(Record { piece, ray, hit })
+}
+
+/// The meeting of a valid ray with the plane of a piece; `None` when they are parallel.
+pub(super) fn meet(piece: &impl Piece, ray: &Ray) -> Option<Meeting> {
+    run(Meet { piece, ray })
+}
+
+/// The record by double-double numbers, without scaling; in doubt by [`surface_exactly`].
+struct Record<'a, S> {
+    piece: &'a S,
+    ray: &'a Ray,
+    hit: Hit,
+}
+
+impl<S: Piece> Task for Record<'_, S> {
+    type Output = Surface;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        let plane = self.piece.plane();
+        let w = difference(plane.anchor, self.ray.origin);
+        match place::<P>(&plane, plane.offset, &w, self.ray.direction) {
+            Some(Place { t, local, error }) => {
+                self.piece.record::<P>(&Meeting { t: t.high, local, power: 0, error })
+            }
+            None => surface_exactly(self.piece, self.ray, self.hit),
+        }
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn surface_exactly<S: Piece>(piece: &S, ray: &Ray, hit: Hit) -> Surface {
+    struct Record<'a, S>(&'a S, Meeting);
+    impl<S: Piece> Task for Record<'_, S> {
+        type Output = Surface;
+        #[inline(always)]
+        fn run<P: Product>(self) -> Surface {
+            self.0.record::<P>(&self.1)
+        }
+    }
+    match meet(piece, ray) {
+        Some(at) => run(Record(piece, at)),
+        None => piece.parallel(ray, hit),
+    }
+}
+
+/// A place in a plane.
+struct Place {
+    t: Double,
+    local: [Double; 3],
+    /// A bound on the error of each coordinate of `local`.
+    error: f64,
+}
+
+/// Where a ray meets a plane, in double-double; `None` unless the parameter is right to 2^-70 of itself and `local` to
+/// 2^-60 of its largest coordinate, or when a range is left that excludes under- and overflow.
+///
+/// `w` is the anchor seen from the origin of the ray, exactly.
+#[inline(always)]
+fn place<P: Product>(plane: &ExactPlane, offset: f64, w: &[Double; 3], d: DVec3) -> Option<Place> {
+    let (numerator, n_size, denominator, d_size) = match plane.axis {
+        Some(k) => {
+            let (w, d) = match k {
+                0 => (w[0], d.x),
+                1 => (w[1], d.y),
+                _ => (w[2], d.z),
+            };
+            (w, w.high.abs(), Double::from(d), d.abs())
+        }
+        None => {
+            let (numerator, n_size) = dot::<P>(&plane.normal, w, offset);
+            let (denominator, d_size) = dot::<P>(&plane.normal, &doubles(d), 0.0);
+            (numerator, n_size, denominator, d_size)
+        }
+    };
+    let inverse = 1.0 / denominator.high;
+    let t = quotient::<P>(numerator, denominator, inverse);
+    let along = |w: Double, d: f64| {
+        let (p, e) = P::two_product(t.high, d);
+        let (s, f) = two_difference(p, w.high);
+        let (high, low) = fast_two_sum(s, ((e + t.low * d) + f) - w.low);
+        Double { high, low }
+    };
+    let mut local = [along(w[0], d.x), along(w[1], d.y), along(w[2], d.z)];
+    match plane.axis {
+        Some(0) => local[0] = Double::ZERO,
+        Some(1) => local[1] = Double::ZERO,
+        Some(_) => local[2] = Double::ZERO,
+        None => {}
+    }
+    let reach = largest(DVec3::new(w[0].high, w[1].high, w[2].high));
+    let speed = largest(d);
+    // The sums err by 2^-99 of the sizes of their terms, the quotient by 2^-101 of itself. Of a coordinate of local,
+    // the low part adds four roundings of at most 4 u (|t d| + |w|): 2^-102 of that.
+    let size = t.high.abs();
+    let slack = exp2i(-98) * ((n_size + d_size * size) * inverse.abs());
+    let error = slack * speed + exp2i(-100) * (size * speed + reach);
+    let least = largest(DVec3::new(local[0].high, local[1].high, local[2].high));
+    // In these ranges |t| lies between 2^-654 and 2^654: no product of large parts overflows, and what the others
+    // lose to underflow is 2^-1074, nothing against 2^-100 of the numerator. NaN makes a comparison false.
+    let sound = (slack < exp2i(-70) * size)
+        & (error < exp2i(-60) * least)
+        & (numerator.high.abs() > exp2i(-400))
+        & (denominator.high.abs() > exp2i(-400))
+        & (reach < exp2i(250))
+        & (speed < exp2i(250));
+    sound.then_some(Place { t, local, error })
+}
+
+/// `a . b + c`, and the sum of the sizes of its terms, `S`: products and sums of high parts without error, their
+/// errors and the low parts added up in `f64` (Ogita, Rump, Oishi 2005, Accurate Sum and Dot Product,
+/// doi:10.1137/030601818). Errs by less than 2^-99 S: at most ten additions of parts that are below 8 u S together,
+/// 80 u^2 S; products of the low parts, what is left out of them and the rounding of a normal, 8 u^2 S.
+#[inline(always)]
+pub(super) fn dot<P: Product>(a: &[Double; 3], b: &[Double; 3], c: f64) -> (Double, f64) {
+    let term = |i: usize| {
+        let (p, e) = P::two_product(a[i].high, b[i].high);
+        (p, e + (a[i].high * b[i].low + a[i].low * b[i].high))
+    };
+    let ((x, x_low), (y, y_low), (z, z_low)) = (term(0), term(1), term(2));
+    let (s, e) = two_sum(x, y);
+    let (s, f) = two_sum(s, z);
+    let (s, g) = two_sum(s, c);
+    let (high, low) = fast_two_sum(s, ((x_low + y_low) + z_low) + ((e + f) + g));
+    (Double { high, low }, x.abs() + y.abs() + z.abs() + c.abs())
+}
+
+/// The quotient, given the inverse of the large part of the divisor: one Newton step from the rounded quotient. The
+/// remainder is at most 5 u of the dividend and rounds three times, the step twice: right to 2^-101.
+#[inline(always)]
+pub(super) fn quotient<P: Product>(a: Double, b: Double, inverse: f64) -> Double {
+    let q = a.high * inverse;
+    let (p, e) = P::two_product(q, b.high);
+    let rest = ((a.high - p) - e) + (a.low - q * b.low);
+    let (high, low) = fast_two_sum(q, rest * inverse);
+    Double { high, low }
+}
+
+struct Meet<'a, S> {
+    piece: &'a S,
+    ray: &'a Ray,
+}
+
+impl<S: Piece> Task for Meet<'_, S> {
+    type Output = Option<Meeting>;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Option<Meeting> {
+        let plane = self.piece.plane();
+        let (direction, direction_power) = prescaled(self.ray.direction);
+        let (w, power) = exact_difference(plane.anchor, self.ray.origin);
+        let offset = plane.offset * exp2i(-power);
+        let place = match place::<P>(&plane, offset, &w, direction) {
+            Some(place) => place,
+            None => place_exactly::<P>(&self.piece.exact_normal(), &plane, offset, &w, direction)?,
+        };
+        Some(Meeting {
+            t: times_power(place.t.to_f64(), power - direction_power),
+            local: place.local,
+            power,
+            error: place.error,
+        })
+    }
+}
+
+/// Where a ray meets a plane, for `w` and `d` whose largest components are in `[1, 2)`, from exact sums.
+#[cold]
+#[inline(never)]
+fn place_exactly<P: Product>(
+    normal: &[Expansion; 3],
+    plane: &ExactPlane,
+    offset: f64,
+    w: &[Double; 3],
+    d: DVec3,
+) -> Option<Place> {
+    let d = d.to_array();
+    let (mut numerator, mut denominator) = (Expansion::ZERO, Expansion::ZERO);
+    numerator.add(offset);
+    for i in 0..3 {
+        numerator.add_expansion_product::<P>(&normal[i], w[i]);
+        denominator.add_expansion_product::<P>(&normal[i], Double::from(d[i]));
+    }
+    let denominator = denominator.rounded();
+    if denominator.high == 0.0 {
+        return None;
+    }
+    let t = numerator.rounded().div::<P>(denominator);
+    let mut local = [0, 1, 2].map(|i| t.scale::<P>(d[i]) - w[i]);
+    // The quotient errs by 2^-102 of itself, the product and the difference by 2^-103 of their operands.
+    let mut error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
+    let largest = local.iter().fold(0.0_f64, |m, x| if x.high.abs() > m { x.high.abs() } else { m });
+    // A place near the anchor met from afar: without the difference of large numbers.
+    if plane.offset == 0.0 && largest < exp2i(-40) * t.high.abs() {
+        local = near_anchor::<P>(&plane.normal, w, d, denominator);
+        error = exp2i(-99) * largest;
+    }
+    if let Some(k) = plane.axis {
+        local[k as usize % 3] = Double::ZERO;
+    }
+    Some(Place { t, local, error })
+}
+
+/// `t d - w = n x (d x w) / (n . d)`, with an exact inner product: for places much nearer to the anchor than the
+/// origin is. Errs by 2^-100 of itself over the cosine between normal and direction.
+fn near_anchor<P: Product>(
+    n: &[Double; 3],
+    w: &[Double; 3],
+    d: [f64; 3],
+    denominator: Double,
+) -> [Double; 3] {
+    let m = cross::<P>(&d.map(Double::from), w).map(|m| m.rounded());
+    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (n[j].mul::<P>(m[k]) - n[k].mul::<P>(m[j])).div::<P>(denominator))
+}
+
+/// `a - b` as exact sums of two `f64`.
+#[inline(always)]
+fn difference(a: DVec3, b: DVec3) -> [Double; 3] {
+    [Double::difference(a.x, b.x), Double::difference(a.y, b.y), Double::difference(a.z, b.z)]
+}
+
+/// `a - b` as exact sums of two `f64`, in units of the returned power of two, in which the largest is in `[1, 2)`.
+#[inline(always)]
+pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
+    let w = difference(a, b);
+    let power = power_of(DVec3::new(w[0].high, w[1].high, w[2].high));
+    let scale = exp2i(-power);
+    (w.map(|x| x.scale_exact(scale)), power)
+}

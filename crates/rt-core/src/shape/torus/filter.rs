@@ -1,0 +1,378 @@
+//! The fast half of a hit: all in `f64`, with error bounds that tell when it cannot decide.
+//!
+//! The same steps as in the module `exact`. What is known of a value of `f` is its sign whenever it exceeds the error
+//! bound, and then no rounding can have changed the count; anything else is handed to double-double arithmetic.
+
+use super::Torus;
+use super::exact;
+use super::extrema::outermost;
+use super::line::Line;
+use super::record::HIT_ERROR;
+use crate::double::{Double, two_sum};
+use crate::kernel::{Product, Task};
+use crate::math::{exp2i, sqrt};
+use crate::scaled::{ScaledRay, largest};
+use crate::{Hit, Interval};
+use glam::DVec3;
+
+/// What `f64` arithmetic can say about the crossings of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// These, ascending, and no more.
+    Certain(Hits),
+    /// A sign, a parameter or an end of the interval is within rounding.
+    Doubt,
+}
+
+/// At most four hits, ascending.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Hits {
+    list: [Option<Hit>; 4],
+}
+
+impl Hits {
+    pub const NONE: Hits = Hits { list: [None; 4] };
+
+    /// The hits there are.
+    #[inline(always)]
+    pub fn iter(&self) -> impl Iterator<Item = Hit> + '_ {
+        self.list.iter().flatten().copied()
+    }
+}
+
+/// Searches the first crossing inside the interval, or all of them.
+pub(super) struct Filter<'a> {
+    pub torus: &'a Torus,
+    pub ray: &'a ScaledRay,
+    pub within: Interval,
+    pub all: bool,
+}
+
+/// A line about its closest approach: the same quantities as in [`Line`](super::line::Line).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RoughLine {
+    /// The parameter of the closest approach is the sum of the two.
+    pub first: f64,
+    pub rest: f64,
+    pub square: f64,
+    /// One over the length of the direction.
+    pub inverse: f64,
+    pub k: f64,
+    pub z: f64,
+    pub slope: f64,
+    pub p: f64,
+    pub q: f64,
+}
+
+/// The value of `f`, a quarter of its derivative, and a bound on the error of the value.
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    value: f64,
+    slope: f64,
+    error: f64,
+}
+
+/// From further away the sums below lose more than they are allowed to.
+const FAR: f64 = exp2i(40);
+/// One rounding, relative.
+const U: f64 = exp2i(-53);
+
+impl RoughLine {
+    /// `None` when the line clearly passes outside the sphere about the torus.
+    ///
+    /// `|m|` errs by at most 4 u of `R + r` for a line that passes within it: the sum is exact up to its last
+    /// rounding, and the little that is left to go after the first step is known to 4 u.
+    #[inline(always)]
+    pub fn new<P: Product>(torus: &Torus, ray: &ScaledRay) -> Option<RoughLine> {
+        let (d, w) = (ray.direction, ray.relative);
+        let far = w.high();
+        let length_squared = d.dot(d);
+        let inverse_squared = 1.0 / length_squared;
+        let first = -far.dot(d) * inverse_squared;
+        let advance = |high: f64, low: f64, d: f64| {
+            let (p, e) = P::two_product(first, d);
+            let (s, f) = two_sum(high, p);
+            s + (f + (e + low))
+        };
+        let near = DVec3::new(
+            advance(w.x.high, w.x.low, d.x),
+            advance(w.y.high, w.y.low, d.y),
+            advance(w.z.high, w.z.low, d.z),
+        );
+        // Only the component across the line counts; along it the point may be off by what the scalar product and
+        // the division err, 8 u of the distance, and some.
+        let reach = torus.reach + largest(far) * (16.0 * U);
+        if near.length_squared() > reach * reach * (1.0 + 16.0 * U) {
+            return None;
+        }
+        let rest = -near.dot(d) * inverse_squared;
+        let m = near + d * rest;
+        let square = m.length_squared();
+        if square > torus.reach * torus.reach * (1.0 + 32.0 * U) {
+            return None;
+        }
+        let inverse = 1.0 / sqrt(length_squared);
+        let k = square - torus.squares.high;
+        let z = m.dot(torus.axis);
+        let slope = d.dot(torus.axis) * inverse;
+        let twice = torus.twice.high;
+        Some(RoughLine {
+            first,
+            rest,
+            square,
+            inverse,
+            k,
+            z,
+            slope,
+            p: k + twice * slope * slope,
+            q: twice * z * slope,
+        })
+    }
+
+    /// `f` and its derivative at `x`, and how far the value may be off.
+    ///
+    /// The errors of `k` and `z`, with `S = R + r`, `|m|^2 + x^2 <= S^2` wherever it matters and `|m . u| <= 4 u |m|`:
+    /// that of `|m|^2` 11 u S^2, of `R^2 + r^2` and the differences 4 u S^2, of `x^2` u S^2, of the neglected
+    /// `2 x m . u` 8 u S^2, hence 24 u S^2; that of `m . a` 9 u S, of `x (u . a)` 9 u S, with the sum less than
+    /// 16 u S since the two are perpendicular parts. `f` errs by these times its derivatives by `k` and `z` and by
+    /// its own roundings; the rounded place of an extremum matters by less than u S^4 / 16.
+    #[inline(always)]
+    fn value(&self, torus: &Torus, x: f64) -> Value {
+        let k = self.k + x * x;
+        let z = self.z + x * self.slope;
+        let r = torus.minor_scaled;
+        let twice = torus.twice.high;
+        let gap = (r - z) * (r + z);
+        let s = torus.reach;
+        let square = k * k;
+        let error_k = 24.0 * U * s * s;
+        let error_z = 16.0 * U * s;
+        Value {
+            value: square - 2.0 * twice * gap,
+            slope: k * x + twice * z * self.slope,
+            error: 2.0 * k.abs() * error_k
+                + 4.0 * twice * (z.abs() + error_z) * error_z
+                + 4.0 * U * (square + 2.0 * twice * gap.abs())
+                + 0.0625 * U * s * s * s * s,
+        }
+    }
+
+    /// An eighth of the second derivative.
+    #[inline(always)]
+    fn bend(&self, x: f64) -> f64 {
+        0.5 * (3.0 * x * x + self.p)
+    }
+
+    /// The coefficients of the quartic, ascending, and rounded.
+    pub fn coefficients(&self, torus: &Torus) -> [f64; 5] {
+        [self.value(torus, 0.0).value, 4.0 * self.q, 2.0 * self.p, 0.0, 1.0]
+    }
+
+    /// The parameter at the distance `x` from the closest approach.
+    #[inline(always)]
+    pub fn parameter_at(&self, x: f64) -> f64 {
+        self.first + (self.rest + x * self.inverse)
+    }
+}
+
+/// An end of a stretch on which `f` is monotonic.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    x: f64,
+    /// What `x` lacks, where the node is known to double-double accuracy.
+    low: f64,
+    /// NaN at the ends of the line, which are no extrema.
+    value: f64,
+    /// Half the second derivative.
+    bend: f64,
+    inside: bool,
+    sharp: bool,
+}
+
+impl Node {
+    #[inline(always)]
+    fn end(x: f64) -> Node {
+        Node { x, low: 0.0, value: f64::NAN, bend: f64::NAN, inside: false, sharp: false }
+    }
+
+    /// Where the parabola at the extremum is zero, as a distance from it; NaN for an end.
+    #[inline(always)]
+    fn reach(&self) -> f64 {
+        sqrt(-self.value / self.bend)
+    }
+}
+
+/// The extremum near `x` in double-double; `None` where its sign is still in doubt, or another extremum is so near
+/// that `f64` cannot keep them apart.
+#[inline(always)]
+fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
+    let mut c = Double::from(x);
+    let (p, q) = line.extremal::<P>();
+    let bend = 2.0 * (3.0 * x * x + p.high);
+    // The slope's roundings, 2^-47 of S^3, displace the extremum in f64 by twice that over the bend. Down to this bend
+    // that is at most 2^-36 S; Newton's step squares it, times 12 S over the bend, to 2^-58 S, and the value errs by
+    // the bend times the square of that: 2^-120.
+    if bend.abs() < exp2i(-10) * torus.reach * torus.reach {
+        return None;
+    }
+    let square = c.square::<P>();
+    let slope = (square + p).mul::<P>(c) + q;
+    c = c - slope.high / (0.5 * bend);
+    let value = line.value::<P>(c).0.high;
+    if value.abs() <= exact::uncertainty(torus, line, x) || value.is_nan() {
+        return None;
+    }
+    Some(Node { x: c.high, low: c.low, value, bend, inside: value < 0.0, sharp: true })
+}
+
+impl Task for Filter<'_> {
+    type Output = Verdict;
+
+    #[inline(always)]
+    fn run<P: Product>(self) -> Verdict {
+        let Filter { torus, ray, within, all } = self;
+        const MISS: Verdict = Verdict::Certain(Hits::NONE);
+        if largest(ray.relative.high()) > FAR || ray.power.abs() > 1000 {
+            return Verdict::Doubt;
+        }
+        let Some(line) = RoughLine::new::<P>(torus, ray) else { return MISS };
+        let unit = exp2i(ray.power);
+        let s = torus.reach;
+        // Where the line is inside the sphere about the torus, and a little more.
+        let end = sqrt((s * s - line.square).max(0.0) + 64.0 * U * s * s);
+        // The slab that holds the tube.
+        if line.z.abs() - line.slope.abs() * end > torus.minor_scaled + 32.0 * U * s {
+            return MISS;
+        }
+        // What the parameters err: the sum's roundings, the first step's product with the exact rest, and the
+        // distance, of which a little more is asked below.
+        let error_t = 4.0 * U * (line.first.abs() + line.rest.abs() + end * line.inverse);
+        let (from, to) = (line.parameter_at(-end), line.parameter_at(end));
+        if (to + error_t) * unit <= within.min || (from - error_t) * unit >= within.max {
+            return MISS;
+        }
+
+        let c = outermost(line.p, line.q);
+        let discriminant = -3.0 * c * c - 4.0 * line.p;
+        // Where rounding may have made it negative, two equal extrema do no harm.
+        let (extrema, count) = if discriminant < exp2i(-20) * -(c * c) {
+            ([c, 0.0, 0.0], 1)
+        } else {
+            let root = sqrt(discriminant.max(0.0));
+            let (a, b) = (-0.5 * (c + root), -0.5 * (c - root));
+            (if c < 0.0 { [c, a, b] } else { [a, b, c] }, 3)
+        };
+
+        // All signs first: the count must be certain.
+        let mut nodes = [Node::end(-end), Node::end(end), Node::end(end), Node::end(end), Node::end(end)];
+        let mut precise = None;
+        for (node, &x) in nodes[1..].iter_mut().zip(extrema.iter().take(count)) {
+            let Value { value, error, .. } = line.value(torus, x);
+            // The slope at a crossing next to this extremum is at least that of the parabola, 4 sqrt(value bend), or a
+            // quarter of it where the crossing is on the far side of an inflection; the crossing errs by the error
+            // over the slope, of which a quarter of what `surface` relies on is allowed. All this depends on the ray
+            // alone, never on the interval, and so does what is reported.
+            let bend = 4.0 * line.bend(x);
+            let certain =
+                value.abs() > error && 64.0 * error * error <= HIT_ERROR * HIT_ERROR * (value * bend).abs();
+            *node = if certain {
+                Node { x, low: 0.0, value, bend, inside: value < 0.0, sharp: false }
+            } else {
+                let precise = precise.get_or_insert_with(|| Line::of::<P>(torus, ray));
+                match sharpened::<P>(torus, precise, x) {
+                    Some(node) => node,
+                    None => return Verdict::Doubt,
+                }
+            };
+        }
+
+        let mut hits = Hits::NONE;
+        let mut root = 0;
+        for pair in nodes.windows(2).take(count + 1) {
+            let &[low, high] = pair else { break };
+            if low.inside == high.inside {
+                continue;
+            }
+            let index = root;
+            root += 1;
+            // Clearly before the interval: not worth finding.
+            if (line.parameter_at(high.x) + error_t) * unit <= within.min {
+                continue;
+            }
+            let t = line.parameter_at(refine(torus, &line, &low, &high)) * unit;
+            if let Some(hit) = within.admit(t, 0, index) {
+                if let Some(slot) = hits.list.get_mut(index as usize) {
+                    *slot = Some(hit);
+                }
+                if !all {
+                    break;
+                }
+            } else if t >= within.max {
+                break;
+            }
+        }
+        Verdict::Certain(hits)
+    }
+}
+
+/// The crossing between two nodes of different sign.
+#[inline(always)]
+fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
+    let (from_low, from_high) = (low.reach(), high.reach());
+    let rising = from_high.is_nan() || from_low <= from_high;
+    let (near, offset) = if rising { (low, from_low) } else { (high, -from_high) };
+    if near.sharp {
+        return near.x + (near.low + beside(near, offset));
+    }
+    let (mut a, mut b) = (low.x, high.x);
+    let mut x = near.x + offset;
+    if !(x > a && x < b) {
+        x = 0.5 * (a + b);
+    }
+    // Halving alone comes to an end after 53 steps and a few, Newton's method after four or five.
+    for _ in 0..60 {
+        let Value { value, slope, error } = line.value(torus, x);
+        if (value < 0.0) == low.inside {
+            a = x;
+        } else {
+            b = x;
+        }
+        let step = 0.25 * value / slope;
+        let next = x - step;
+        if next > a && next < b {
+            x = next;
+            // The step leaves an error of step^2 f'' / (2 f'), by the series of f; a twentieth of the value's own is
+            // enough.
+            if 80.0 * (step * step * line.bend(x)).abs() <= error {
+                break;
+            }
+        } else if value.abs() <= error {
+            break;
+        } else {
+            x = 0.5 * (a + b);
+        }
+    }
+    x
+}
+
+/// How far from a sharp extremum the crossing next to it is, from the parabola's guess: the zero of the Taylor series
+/// `value + bend y^2 + 4 x y^3 + y^4`, which knows it to a few roundings of itself.
+#[inline(always)]
+fn beside(node: &Node, guess: f64) -> f64 {
+    let mut y = guess;
+    // The guess is off by a part of the order of y; each step squares that.
+    for _ in 0..8 {
+        let cubic = 4.0 * node.x + y;
+        let value = node.value + y * y * (node.bend + y * cubic);
+        let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
+        let step = value / slope;
+        if !step.is_finite() {
+            break;
+        }
+        y -= step;
+        if step.abs() <= exp2i(-30) * y.abs() {
+            break;
+        }
+    }
+    y
+}

@@ -1,0 +1,182 @@
+//! The full record of a hit: parameter, point, normal and angles from the refined crossing.
+
+use super::Torus;
+use super::exact::{self, Crossings};
+use super::line::Line;
+use crate::double::Double;
+use crate::kernel::{Product, Task};
+use crate::math::{exp2i, sqrt};
+use crate::scaled::{ScaledRay, largest, times_power};
+use crate::surface::Coordinates;
+use crate::{Hit, Surface};
+use glam::{DVec2, DVec3};
+
+/// See [`Primitive::surface`](crate::Primitive::surface). `None` where only the whole search can tell which crossing
+/// is meant.
+pub(super) struct Near<'a> {
+    pub torus: &'a Torus,
+    pub ray: &'a ScaledRay,
+    pub hit: Hit,
+}
+
+/// The same with all crossings separated anew.
+pub(super) struct Thorough<'a>(pub Near<'a>);
+
+/// `hit` gives the distance along the ray to this part of the torus' size, or exactly (the module `filter`).
+pub(super) const HIT_ERROR: f64 = exp2i(-38);
+
+impl Task for Near<'_> {
+    type Output = Option<Surface>;
+
+    #[inline(always)]
+    fn run<P: Product>(self) -> Option<Surface> {
+        let line = Line::of::<P>(self.torus, self.ray);
+        let t = Double::from(times_power(self.hit.t(), -self.ray.power));
+        let mut x = line.distance::<P>(t);
+        if x.high.abs() > 2.0 * self.torus.reach || x.high.is_nan() {
+            return None;
+        }
+        let (value, slope) = line.value::<P>(x);
+        // A crossing with an even index leads inward: f falls.
+        if (slope.high < 0.0) != self.hit.root().is_multiple_of(2) {
+            return None;
+        }
+        // Smale's alpha theorem (Blum, Cucker, Shub, Smale, Complexity and Real Computation, 1998, chapter 8): with
+        // gamma the greatest of |f^(j) / (j! f')|^(1 / (j - 1)) at x, Newton's method finds a zero within twice its first
+        // step if that is less than 0.15 / gamma, and two zeros within 0.05 / gamma of x would be nearer to each other
+        // than the 0.16 / gamma that zeros there keep apart. The hit is within HIT_ERROR and the rounding of t of its
+        // crossing, so that is the zero found. Each power of gamma times the reach is compared with that of 0.05.
+        let around = x.high.abs() * 4.0 * f64::EPSILON + (t.high * line.length.high).abs() * f64::EPSILON;
+        let reach = 2.0 * (value.high / (4.0 * slope.high)).abs() + HIT_ERROR + around;
+        let derivative = 4.0 * slope.high.abs();
+        let second = (4.0 * line.bend(x.high)).abs() * reach;
+        let third = (4.0 * x.high).abs() * reach * reach;
+        if !(second < 0.05 * derivative
+            && third < 0.0025 * derivative
+            && reach * reach * reach < 0.000_125 * derivative)
+        {
+            return None;
+        }
+        let mut step = value.div::<P>(slope).scale_exact(0.25);
+        x = x - step;
+        let mut slope = slope.high;
+        // Each step more than doubles the correct bits, of which there are 30 or more at first.
+        for _ in 0..3 {
+            // What is left must vanish beside a rounding of t, of the size and of the tube.
+            let least = (t.high * line.length.high).abs().min(self.torus.minor_scaled);
+            if exact::left(&line, x, slope, step.high) <= exp2i(-70) * least {
+                break;
+            }
+            let (value, steepness) = line.value::<P>(x);
+            step = value.div::<P>(steepness).scale_exact(0.25);
+            slope = steepness.high;
+            x = x - step;
+        }
+        Some(self.torus.record::<P>(self.ray, &line, x))
+    }
+}
+
+impl Task for Thorough<'_> {
+    type Output = Surface;
+
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        let Thorough(Near { torus, ray, hit }) = self;
+        let line = Line::of::<P>(torus, ray);
+        let crossings = exact::crossings::<P>(torus, &line);
+        let t = Double::from(times_power(hit.t(), -ray.power));
+        let x = line.distance::<P>(t);
+        // A ray that left this torus was followed from its exact start; its origin differs from that by a few units
+        // in the last place of the world's coordinates. That changes f by at most its gradient, less than
+        // 32 (R + r)^3, times as much, and a value of so little has a zero of f, which is monic and of degree four,
+        // within the fourth root.
+        let moved = largest(torus.center) * exp2i(-torus.scale) + largest(ray.relative.high()) + torus.reach;
+        let change = 32.0 * torus.reach * torus.reach * torus.reach * moved * exp2i(-50);
+        match chosen(&crossings, x.high, sqrt(sqrt(change)), hit.root()) {
+            Some(x) => torus.record::<P>(ray, &line, x),
+            // That zero is not real: the moved ray passes a place that the exact one grazes.
+            None => {
+                let mut surface = torus.record::<P>(ray, &line, x);
+                surface.normal = surface.normal.normalize();
+                surface.shading_normal = surface.normal;
+                surface
+            }
+        }
+    }
+}
+
+/// The crossing that the hit names: of those in the same sense (both inward or both outward) the one nearest to its
+/// place, unless that is too far, and of equally near ones that of its index. Only rays that leave this torus make a
+/// difference: they were counted along the line from the departure's point, not along the line of the moved ray.
+#[inline(always)]
+fn chosen(crossings: &Crossings, place: f64, too_far: f64, root: u32) -> Option<Double> {
+    let mut best: Option<(f64, Double)> = None;
+    for (index, x) in crossings.as_slice().iter().enumerate() {
+        let miss = (x.high - place).abs();
+        if index as u32 % 2 != root % 2 || miss > too_far {
+            continue;
+        }
+        if best.is_none_or(|(least, _)| miss < least || (miss == least && index as u32 == root)) {
+            best = Some((miss, *x));
+        }
+    }
+    best.map(|(_, x)| x)
+}
+
+impl Torus {
+    /// The record of the point at distance `x` from the closest approach.
+    #[inline(always)]
+    fn record<P: Product>(&self, ray: &ScaledRay, line: &Line, x: Double) -> Surface {
+        let (parameter, local) = line.at::<P>(x);
+        let axis = self.frame[2];
+        let z = line.z + x.mul::<P>(line.slope);
+        let across = local - axis.mul::<P>(z);
+        let rho = across.length_squared::<P>().sqrt::<P>();
+        // How far the point is from the surface as seen from the near and from the far side of the generating
+        // circle, in squares: on the inner sheet of a spindle the second vanishes.
+        let inner = self.minor > self.major && {
+            let height = z.square::<P>() - Double::product::<P>(self.minor_scaled, self.minor_scaled);
+            let near = (rho - self.major_scaled).square::<P>() + height;
+            let far = (rho + self.major_scaled).square::<P>() + height;
+            far.high.abs() < near.high.abs()
+        };
+        // From the circle to the point: `out` along the radius, `z` along the axis. No digit is lost in what follows.
+        let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
+        let normal = if rho.high > 0.0 {
+            across.high() * (out.high / (rho.high * self.minor_scaled))
+                + self.axis * (z.high / self.minor_scaled)
+        } else {
+            // On the axis, where the sheets meet in a point.
+            self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
+        };
+        let flat = local.high();
+        let (x_own, y_own) = (flat.dot(self.frame[0].high()), flat.dot(self.frame[1].high()));
+        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own, y_own, z.high));
+        let world = local.scale_exact(unit);
+        let point = world.plus_f64(self.center);
+        // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
+        // towards the axis.
+        let uv = if inner {
+            Coordinates::Ring(DVec2::new(-own.x, -own.y), DVec2::new(-out.high, own.z))
+        } else {
+            Coordinates::Ring(DVec2::new(own.x, own.y), DVec2::new(out.high, own.z))
+        };
+        let t = ray.unscale(parameter).to_f64();
+        let uncertainty = exact::uncertainty(self, line, x.high);
+        let error = self.error_radius(point, uncertainty, line.slope_at(x.high));
+        Surface::new(t, point, world.high(), normal, error).with_coordinates(uv).with_object_point(own * unit)
+    }
+
+    /// How far `point` can be from the true crossing. The rounding errs by at most 2^-53 of each coordinate, hence
+    /// by 2^-53 of the length (and 2^-1074 where that is subnormal). The place on the ray errs by the error of `f`,
+    /// its [uncertainty](exact::uncertainty), over its derivative, four times `slope`; where that is small, near a
+    /// double crossing, by the order of the uncertainty's root instead.
+    #[inline(always)]
+    fn error_radius(&self, point: DVec3, uncertainty: f64, slope: f64) -> f64 {
+        // sqrt(3) < 1.75, and a few units of slack.
+        let rounding = largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
+        let along = uncertainty / (4.0 * slope.abs());
+        let most = sqrt(uncertainty);
+        rounding + exp2i(self.scale) * if along < most { along } else { most }
+    }
+}

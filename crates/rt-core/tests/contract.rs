@@ -1,0 +1,483 @@
+//! The contract of the library's own shapes: what any shape must keep, and what exact ones can.
+//!
+//! `RT_HARD_RAYS` sets the number of hard rays of each kind for `hard_rays` (default 1000); a release run with 1e7
+//! takes minutes.
+#![cfg(feature = "testing")]
+
+use proptest::prelude::*;
+use rt_core::glam::DVec3;
+use rt_core::testing::{Effort, check_primitive, oracle};
+use rt_core::{Error, Hit, Interval, Primitive, Ray, Shape, Side, Similarity, Surface};
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// The numbers of a shape, so that a test can change them before it is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Spec {
+    Sphere { center: DVec3, radius: f64 },
+    Plane { point: DVec3, normal: DVec3 },
+    Disk { center: DVec3, normal: DVec3, radius: f64 },
+    Cuboid { min: DVec3, max: DVec3 },
+    Cylinder { base: DVec3, top: DVec3, radius: f64, closed: bool },
+    Cone { base: DVec3, base_radius: f64, top: DVec3, top_radius: f64, closed: bool },
+    Torus { center: DVec3, axis: DVec3, major: f64, minor: f64 },
+    Triangle { a: DVec3, b: DVec3, c: DVec3 },
+}
+use Spec::*;
+
+impl Spec {
+    fn build(&self) -> Result<Shape, Error> {
+        Ok(match *self {
+            Sphere { center, radius } => rt_core::shape::Sphere::new(center, radius)?.into(),
+            Plane { point, normal } => rt_core::shape::Plane::new(point, normal)?.into(),
+            Disk { center, normal, radius } => rt_core::shape::Disk::new(center, normal, radius)?.into(),
+            Cuboid { min, max } => rt_core::shape::Cuboid::new(min, max)?.into(),
+            Cylinder { base, top, radius, closed: true } => {
+                rt_core::shape::Cylinder::new(base, top, radius)?.into()
+            }
+            Cylinder { base, top, radius, closed: false } => {
+                rt_core::shape::Cylinder::open(base, top, radius)?.into()
+            }
+            Cone { base, base_radius, top, top_radius, closed: true } => {
+                rt_core::shape::Cone::new(base, base_radius, top, top_radius)?.into()
+            }
+            Cone { base, base_radius, top, top_radius, closed: false } => {
+                rt_core::shape::Cone::open(base, base_radius, top, top_radius)?.into()
+            }
+            Torus { center, axis, major, minor } => {
+                rt_core::shape::Torus::new(center, axis, major, minor)?.into()
+            }
+            Triangle { a, b, c } => rt_core::shape::Triangle::new(a, b, c)?.into(),
+        })
+    }
+
+    /// The same shape with every point mapped by `point`, every direction by `turn`, every length times `scale`.
+    fn map(&self, point: impl Fn(DVec3) -> DVec3, turn: impl Fn(DVec3) -> DVec3, scale: f64) -> Spec {
+        match *self {
+            Sphere { center, radius } => Sphere { center: point(center), radius: radius * scale },
+            Plane { point: p, normal } => Plane { point: point(p), normal: turn(normal) },
+            Disk { center, normal, radius } => {
+                Disk { center: point(center), normal: turn(normal), radius: radius * scale }
+            }
+            Cuboid { min, max } => {
+                let (a, b) = (point(min), point(max));
+                Cuboid { min: a.min(b), max: a.max(b) }
+            }
+            Cylinder { base, top, radius, closed } => {
+                Cylinder { base: point(base), top: point(top), radius: radius * scale, closed }
+            }
+            Cone { base, base_radius, top, top_radius, closed } => Cone {
+                base: point(base),
+                base_radius: base_radius * scale,
+                top: point(top),
+                top_radius: top_radius * scale,
+                closed,
+            },
+            Torus { center, axis, major, minor } => {
+                Torus { center: point(center), axis: turn(axis), major: major * scale, minor: minor * scale }
+            }
+            Triangle { a, b, c } => Triangle { a: point(a), b: point(b), c: point(c) },
+        }
+    }
+
+    fn closed(&self) -> bool {
+        match *self {
+            Sphere { .. } | Cuboid { .. } | Torus { .. } => true,
+            Cylinder { closed, .. } | Cone { closed, .. } => closed,
+            Plane { .. } | Disk { .. } | Triangle { .. } => false,
+        }
+    }
+
+    fn convex(&self) -> bool {
+        match *self {
+            Torus { .. } => false,
+            Cylinder { closed, .. } | Cone { closed, .. } => closed,
+            _ => true,
+        }
+    }
+
+    /// The distance of a point, relative to the anchor, from the part of the surface that was hit.
+    fn distance(&self, surface: &Surface) -> f64 {
+        let l = surface.local;
+        let n = surface.normal;
+        // A cap has the axis for a normal; a side never quite.
+        let capped = |axis: DVec3| n.dot(axis.normalize()).abs() > 1.0 - 1e-12;
+        let cap = |axis: DVec3| oracle::plane(l, axis).abs().min(oracle::plane(l - axis, axis).abs());
+        match *self {
+            Sphere { radius, .. } => oracle::sphere(l, radius),
+            Plane { normal, .. } | Disk { normal, .. } => oracle::plane(l, normal),
+            Cuboid { min, max } => {
+                let size = max - min;
+                (0..3).map(|i| l[i].abs().min((l[i] - size[i]).abs())).fold(f64::INFINITY, f64::min)
+            }
+            Cylinder { base, top, closed: true, .. } | Cone { base, top, closed: true, .. }
+                if capped(top - base) =>
+            {
+                cap(top - base)
+            }
+            Cylinder { base, top, radius, .. } => oracle::cylinder(l, top - base, radius),
+            Cone { base, base_radius, top, top_radius, .. } => {
+                oracle::cone(l, top - base, base_radius, top_radius)
+            }
+            Torus { axis, major, minor, .. } => oracle::torus(l, axis, major, minor),
+            Triangle { a, b, c } => oracle::plane(l, (b - a).cross(c - a)),
+        }
+    }
+}
+
+/// Multiples of 2^-20 up to `most`: sums and differences of a few are exact.
+fn grid(most: f64) -> impl Strategy<Value = f64> {
+    let steps = (most * 1_048_576.0) as i32;
+    (-steps..=steps).prop_map(|n| f64::from(n) / 1_048_576.0)
+}
+
+fn vector(most: f64) -> impl Strategy<Value = DVec3> {
+    (grid(most), grid(most), grid(most)).prop_map(DVec3::from)
+}
+
+/// Directions, one in four along an axis.
+fn direction() -> impl Strategy<Value = DVec3> {
+    prop_oneof![
+        3 => vector(1.0).prop_filter("too short", |v| v.length() > 0.1),
+        1 => (0..3_usize, prop::bool::ANY).prop_map(|(i, back)| if back { -DVec3::AXES[i] } else { DVec3::AXES[i] }),
+    ]
+}
+
+fn length() -> impl Strategy<Value = f64> {
+    (10_000..2_000_000_i32).prop_map(|n| f64::from(n) / 1_048_576.0)
+}
+
+fn solid() -> impl Strategy<Value = Spec> {
+    let p = || vector(4.0);
+    prop_oneof![
+        (p(), length()).prop_map(|(center, radius)| Sphere { center, radius }),
+        (p(), length(), length(), length())
+            .prop_map(|(min, x, y, z)| Cuboid { min, max: min + DVec3::new(x, y, z) }),
+        (p(), direction(), length(), prop::bool::ANY).prop_map(|(base, axis, radius, closed)| Cylinder {
+            base,
+            top: base + axis,
+            radius,
+            closed
+        }),
+        (p(), direction(), length(), prop_oneof![Just(0.0), length()], prop::bool::ANY).prop_map(
+            |(base, axis, base_radius, top_radius, closed)| Cone {
+                base,
+                base_radius,
+                top: base + axis,
+                top_radius,
+                closed
+            }
+        ),
+        (p(), direction(), length(), length()).prop_map(|(center, axis, major, minor)| Torus {
+            center,
+            axis,
+            major,
+            minor
+        }),
+    ]
+}
+
+fn flat() -> impl Strategy<Value = Spec> {
+    let p = || vector(4.0);
+    prop_oneof![
+        (p(), direction()).prop_map(|(point, normal)| Plane { point, normal }),
+        (p(), direction(), length()).prop_map(|(center, normal, radius)| Disk { center, normal, radius }),
+        (p(), vector(2.0), vector(2.0)).prop_map(|(a, e, f)| Triangle { a, b: a + e, c: a + f }),
+    ]
+}
+
+fn spec() -> impl Strategy<Value = Spec> {
+    prop_oneof![2 => solid(), 1 => flat()].prop_filter("degenerate", |s| s.build().is_ok())
+}
+
+/// A shape and a ray at something near it.
+fn aimed(spec: impl Strategy<Value = Spec>) -> impl Strategy<Value = (Spec, Ray)> {
+    (spec, vector(16.0), vector(1.0)).prop_map(|(spec, away, off)| {
+        let shape = spec.build().expect("filtered");
+        let target = shape.bounds().map_or(DVec3::ZERO, |b| grid_point(b.center())) + off;
+        (spec, Ray::new(target + away, if away == DVec3::ZERO { DVec3::X } else { -away }))
+    })
+}
+
+/// The nearest point whose coordinates are multiples of 2^-20.
+fn grid_point(p: DVec3) -> DVec3 {
+    (p * 1_048_576.0).round() / 1_048_576.0
+}
+
+fn crossings(shape: &Shape, ray: &Ray) -> Vec<Hit> {
+    let mut hits = Vec::new();
+    shape.crossings(ray, Interval::LINE, &mut |hit| hits.push(hit));
+    hits
+}
+
+fn parameters(shape: &Shape, ray: &Ray) -> Vec<f64> {
+    crossings(shape, ray).into_iter().map(|hit| shape.surface(ray, hit).t).collect()
+}
+
+/// Whether two lists of parameters are the same to `ulps` units of `scale`.
+fn same(a: &[f64], b: &[f64], scale: f64, ulps: f64) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= ulps * 2.0 * U * scale)
+}
+
+/// The least cosine of the angle between the line and the normals, and the least gap between parameters: rays for which
+/// the last bit decides the count are not for properties that compare two of them.
+fn clear(shape: &Shape, ray: &Ray) -> bool {
+    let hits = crossings(shape, ray);
+    let d = ray.direction.normalize();
+    let steep = hits.iter().all(|h| shape.surface(ray, *h).normal.dot(d).abs() > 1e-6);
+    steep && hits.windows(2).all(|w| (w[1].t() - w[0].t()).abs() > 1e-9)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(384) })]
+
+    #[test]
+    fn every_shape_keeps_the_contract(spec in spec(), seed in any::<u64>()) {
+        let effort = Effort::new(seed, 6);
+        let effort = if spec.closed() { effort.closed() } else { effort };
+        let result = check_primitive(&spec.build().unwrap(), &effort);
+        prop_assert!(result.is_ok(), "{spec:?}: {}", result.unwrap_err());
+    }
+
+    /// P1, P2: the surface equation holds for `local`, within one unit in the last place of its size.
+    #[test]
+    fn hits_lie_on_the_surface((spec, ray) in aimed(spec())) {
+        let shape = spec.build().unwrap();
+        for hit in crossings(&shape, &ray) {
+            let surface = shape.surface(&ray, hit);
+            let size = shape.bounds().map_or(0.0, |b| (b.max - b.min).max_element()).max(surface.local.length());
+            let off = spec.distance(&surface);
+            prop_assert!(off.abs() <= 4.0 * U * size, "{off:e} off, {surface:?}");
+        }
+    }
+
+    /// P6: lengths times a power of two, the parameter times the same, bit for bit.
+    #[test]
+    fn scaling_is_exact((spec, ray) in aimed(spec()), power in -60..60_i32) {
+        let scale = f64::from(power).exp2();
+        let shape = spec.build().unwrap();
+        let larger = spec.map(|p| p * scale, |d| d, scale).build().unwrap();
+        let far = Ray::new(ray.origin * scale, ray.direction);
+        let a: Vec<f64> = crossings(&shape, &ray).iter().map(|h| h.t() * scale).collect();
+        let b: Vec<f64> = crossings(&larger, &far).iter().map(Hit::t).collect();
+        prop_assert_eq!(a, b);
+        let a: Vec<f64> = parameters(&shape, &ray).iter().map(|t| t * scale).collect();
+        prop_assert_eq!(a, parameters(&larger, &far));
+    }
+
+    /// P7: a mirror across a coordinate plane changes no bit; neither does another order of the axes for a cuboid, and
+    /// for other shapes it changes what one rounding can.
+    #[test]
+    fn mirrors_and_orders((spec, ray) in aimed(spec()), k in 0..3_usize) {
+        let shape = spec.build().unwrap();
+        let signs = DVec3::select(DVec3::AXES[k].cmpne(DVec3::ZERO), DVec3::NEG_ONE, DVec3::ONE);
+        let flip = |v: DVec3| v * signs;
+        let turned = |v: DVec3| DVec3::new(v.y, v.z, v.x);
+        let image = spec.map(flip, flip, 1.0).build().unwrap();
+        let mirrored = Ray::new(flip(ray.origin), flip(ray.direction));
+        prop_assert_eq!(parameters(&shape, &ray), parameters(&image, &mirrored));
+        let hit = |shape: &Shape, ray: &Ray| shape.hit(ray, Interval::FORWARD).map(|h| h.t());
+        prop_assert_eq!(hit(&shape, &ray), hit(&image, &mirrored));
+        let other = spec.map(turned, turned, 1.0).build().unwrap();
+        let there = Ray::new(turned(ray.origin), turned(ray.direction));
+        let (a, b) = (parameters(&shape, &ray), parameters(&other, &there));
+        if matches!(spec, Cuboid { .. }) {
+            prop_assert_eq!(hit(&shape, &ray), hit(&other, &there));
+            prop_assert_eq!(a, b);
+        } else {
+            let scale = a.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+            prop_assert!(same(&a, &b, scale, 1.0) || !clear(&shape, &ray), "{a:?} {b:?}");
+        }
+    }
+
+    /// P8: moved together by exact steps, ray and shape meet at the same parameter.
+    #[test]
+    fn moving_both((spec, ray) in aimed(spec()), x in -1000..1000_i32, y in -1000..1000_i32) {
+        let offset = DVec3::new(f64::from(x), f64::from(y), 1024.0);
+        let shape = spec.build().unwrap();
+        let moved = spec.map(|p| p + offset, |d| d, 1.0).build().unwrap();
+        let (a, b) = (parameters(&shape, &ray), parameters(&moved, &Ray::new(ray.origin + offset, ray.direction)));
+        let scale = a.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+        prop_assert!(same(&a, &b, scale, 1.0) || !clear(&shape, &ray), "{a:?} {b:?}");
+    }
+
+    /// P9: from the other end the same line meets the same places.
+    #[test]
+    fn reversed((spec, ray) in aimed(spec())) {
+        let shape = spec.build().unwrap();
+        let back = Ray::new(ray.origin + ray.direction * 2.0, -ray.direction);
+        let a = parameters(&shape, &ray);
+        let mut b: Vec<f64> = parameters(&shape, &back).iter().map(|t| 2.0 - t).collect();
+        b.reverse();
+        let scale = a.iter().fold(2.0_f64, |m, t| m.max(t.abs()));
+        prop_assert!(same(&a, &b, scale, 2.0) || !clear(&shape, &ray), "{a:?} {b:?}");
+    }
+
+    /// P10: a cylinder or cone told from its other end is the same.
+    #[test]
+    fn either_end((spec, ray) in aimed(solid())) {
+        let other = match spec {
+            Cylinder { base, top, radius, closed } => Cylinder { base: top, top: base, radius, closed },
+            Cone { base, base_radius, top, top_radius, closed } if top_radius > 0.0 => {
+                Cone { base: top, base_radius: top_radius, top: base, top_radius: base_radius, closed }
+            }
+            _ => return Ok(()),
+        };
+        let (Ok(shape), Ok(other)) = (spec.build(), other.build()) else { return Ok(()) };
+        let (a, b) = (parameters(&shape, &ray), parameters(&other, &ray));
+        let scale = a.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+        prop_assert!(same(&a, &b, scale, 1.0) || !clear(&shape, &ray), "{a:?} {b:?}");
+    }
+
+    /// P11: a triangle does not care which corner comes first.
+    #[test]
+    fn any_corner_first(a in vector(4.0), e in vector(2.0), f in vector(2.0), away in vector(16.0),
+                        w in 0.0..=1.0_f64, on_edge in prop::bool::ANY) {
+        let (b, c) = (a + e, a + f);
+        let orders = [[a, b, c], [b, c, a], [c, a, b], [a, c, b]];
+        let shapes = orders.map(|[a, b, c]| Triangle { a, b, c }.build());
+        let [Ok(p), Ok(q), Ok(r), Ok(s)] = shapes else { return Ok(()) };
+        let target = a + e * w + f * if on_edge { 0.0 } else { 1.0 - w };
+        let ray = Ray::new(target + away, -away);
+        let hits = [p, q, r, s].map(|shape| parameters(&shape, &ray));
+        for other in &hits[1..] {
+            prop_assert_eq!(&hits[0], other);
+        }
+    }
+
+    /// P11: no ray at the diagonal of a square made of two triangles, or at a corner of a fan, slips through.
+    #[test]
+    fn watertight(a in vector(4.0), e in direction(), f in direction(), g in direction(),
+                  away in vector(64.0), w in 0.0..=1.0_f64, power in -30..24_i32) {
+        let scale = f64::from(power).exp2();
+        let (b, c, d) = (a + e, a + f, a + g);
+        let target = a + e * w;
+        let ray = Ray::new(target + away * scale, -away);
+        let left = Triangle { a, b, c }.build();
+        let right = Triangle { a: b, b: a, c: d }.build();
+        let (Ok(left), Ok(right)) = (left, right) else { return Ok(()) };
+        // On which sides of the plane through the ray and the edge the third corners lie decides whether both
+        // triangles together cover a neighbourhood of the edge, as the ray sees it.
+        let plane = ray.direction.cross(e);
+        let (l, r) = (plane.dot(c - a), plane.dot(d - a));
+        let inside = w > 1e-3 && w < 1.0 - 1e-3;
+        if inside && l * r < 0.0 && l.abs() > 1e-3 * away.length() && r.abs() > 1e-3 * away.length() {
+            let line = Interval::LINE;
+            prop_assert!(left.hit(&ray, line).is_some() || right.hit(&ray, line).is_some());
+        }
+    }
+
+    /// P14: a cone with equal radii is a cylinder.
+    #[test]
+    fn cone_without_slope((spec, ray) in aimed(solid())) {
+        let Cylinder { base, top, radius, closed } = spec else { return Ok(()) };
+        let cone = Cone { base, base_radius: radius, top, top_radius: radius, closed };
+        let (cylinder, cone) = (spec.build().unwrap(), cone.build().unwrap());
+        let (a, b) = (parameters(&cylinder, &ray), parameters(&cone, &ray));
+        let scale = a.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+        prop_assert!(same(&a, &b, scale, 1.0) || !clear(&cylinder, &ray), "{a:?} {b:?}");
+    }
+
+    /// P14: a torus whose major radius vanishes is a sphere, twice.
+    #[test]
+    fn torus_without_hole(center in vector(4.0), axis in direction(), radius in length(), away in vector(16.0),
+                          off in vector(1.0)) {
+        let ray = Ray::new(center + off + away, -away);
+        if !ray.is_valid() { return Ok(()) }
+        let major = radius * 1e-12;
+        let (Ok(torus), Ok(sphere)) =
+            (Torus { center, axis, major, minor: radius }.build(), Sphere { center, radius }.build())
+        else { return Ok(()) };
+        let reach = ray.direction.length();
+        if let (Some(a), Some(b)) = (torus.hit(&ray, Interval::LINE), sphere.hit(&ray, Interval::LINE)) {
+            let cosine = sphere.surface(&ray, b).normal.dot(ray.direction).abs() / reach;
+            prop_assert!((a.t() - b.t()).abs() * reach * cosine <= 8.0 * major || cosine < 1e-4);
+        }
+    }
+
+    /// P15: a ray that leaves a convex shape outward does not come back; one that goes in comes out.
+    #[test]
+    fn leaving((spec, ray) in aimed(spec()), way in direction()) {
+        let shape = spec.build().unwrap();
+        for hit in crossings(&shape, &ray) {
+            let surface = shape.surface(&ray, hit);
+            let outward = if surface.normal.dot(way) < 0.0 { -way } else { way };
+            for side in [Side::Outside, Side::Inside] {
+                let way = outward * side.sign();
+                let from = surface.departure(0, hit, side);
+                let (start, within) = from.ray(way);
+                let next = shape.hit_leaving(&start, within, &from);
+                let flat = !spec.closed();
+                if spec.convex() && (flat || side == Side::Outside) {
+                    prop_assert_eq!(next, None);
+                }
+                if spec.convex() && !flat && side == Side::Inside {
+                    prop_assert!(next.is_some(), "no exit from {surface:?}");
+                }
+                let mut all = Vec::new();
+                shape.crossings_leaving(&start, within, &from, &mut |hit| all.push(hit));
+                prop_assert_eq!(all.first().copied(), next);
+                // The sheets of a spindle torus enclose each other.
+                let spindle = matches!(spec, Torus { major, minor, .. } if minor >= major);
+                if spec.closed() && !spindle {
+                    prop_assert_eq!(all.len() % 2, usize::from(side == Side::Inside), "{:?} {:?}", side, all);
+                }
+            }
+        }
+    }
+}
+
+/// A seeded run of hard rays for each shape, at several sizes and places.
+fn hard_rays(spec: Spec) {
+    let count = std::env::var("RT_HARD_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
+    for (seed, (scale, offset)) in [(1.0, 0.0), (1.0, 1e6), (1e-9, 0.0), (1e9, 1e12)].into_iter().enumerate()
+    {
+        let spec = spec.map(|p| p * scale + DVec3::new(offset, -offset, 0.5 * offset), |d| d, scale);
+        let shape = spec.build().unwrap();
+        let effort = Effort::new(seed as u64, count);
+        let effort = if spec.closed() { effort.closed() } else { effort };
+        check_primitive(&shape, &effort).unwrap_or_else(|failure| panic!("{spec:?}: {failure}"));
+    }
+}
+
+macro_rules! hard_rays {
+    ($($name:ident: $spec:expr;)*) => {
+        mod hard {
+            use super::*;
+            $(#[test]
+            fn $name() {
+                hard_rays($spec);
+            })*
+        }
+    };
+}
+
+const AXIS: DVec3 = DVec3::new(0.3, 1.0, -0.2);
+
+hard_rays! {
+    sphere: Sphere { center: DVec3::new(0.5, 0.25, 0.0), radius: 1.25 };
+    plane: Plane { point: DVec3::new(0.5, 0.25, 0.0), normal: AXIS };
+    floor: Plane { point: DVec3::ZERO, normal: DVec3::Y };
+    disk: Disk { center: DVec3::new(0.5, 0.25, 0.0), normal: AXIS, radius: 1.25 };
+    cuboid: Cuboid { min: DVec3::new(-0.5, 0.25, -3.0), max: DVec3::new(1.0, 1.5, 2.0) };
+    tile: Cuboid { min: DVec3::new(-0.5, 0.25, -3.0), max: DVec3::new(1.0, 0.25, 2.0) };
+    cylinder: Cylinder { base: DVec3::ZERO, top: AXIS, radius: 0.75, closed: true };
+    open_cylinder: Cylinder { base: DVec3::ZERO, top: AXIS, radius: 0.75, closed: false };
+    cone: Cone { base: DVec3::ZERO, base_radius: 1.0, top: AXIS, top_radius: 0.0, closed: true };
+    frustum: Cone { base: DVec3::ZERO, base_radius: 1.0, top: AXIS, top_radius: 0.25, closed: true };
+    torus: Torus { center: DVec3::ZERO, axis: AXIS, major: 1.0, minor: 0.25 };
+    spindle: Torus { center: DVec3::ZERO, axis: AXIS, major: 1.0, minor: 1.5 };
+    triangle: Triangle { a: DVec3::ZERO, b: DVec3::new(2.0, 0.5, 0.0), c: DVec3::new(0.0, 1.0, 1.0) };
+}
+
+/// A turned box keeps the contract of any closed convex shape.
+#[test]
+fn turned_cuboids() {
+    for degrees in [90.0, 33.0, 1e-9] {
+        let turn = Similarity::IDENTITY.rotated([1.0, 2.0, -0.5], degrees).unwrap();
+        let turn = turn.translated([1e4, -3.0, 0.5]).unwrap();
+        let cuboid = rt_core::shape::Cuboid::new([-1.0, -2.0, -0.5], [1.0, 2.0, 0.5]).unwrap();
+        let shape = cuboid.transformed(&turn).unwrap();
+        check_primitive(&shape, &Effort::new(7, 1000).closed()).unwrap_or_else(|failure| panic!("{failure}"));
+    }
+}

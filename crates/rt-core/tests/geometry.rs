@@ -1,0 +1,310 @@
+//! A geometry finds what a loop over its shapes finds, bit for bit: nearest, occluded and crossings, in random
+//! scenes of all shapes, with ties, far from the origin, at any scale, with every instruction set.
+
+use proptest::prelude::*;
+use rt_core::glam::DVec3;
+use rt_core::kernel::{Level, set_level};
+use rt_core::shape::*;
+use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side};
+use std::ops::ControlFlow;
+
+/// Coordinates from a coarse grid, so that faces coincide and rays meet edges, and from anywhere.
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![(-4_i32..=4).prop_map(|i| f64::from(i) * 0.25), -1.0..1.0]
+}
+
+fn point() -> impl Strategy<Value = DVec3> {
+    (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+}
+
+fn size() -> impl Strategy<Value = f64> {
+    prop_oneof![(1_i32..=4).prop_map(|i| f64::from(i) * 0.125), 0.001..0.5, 1.0..4.0]
+}
+
+/// A direction, often along an axis.
+fn direction() -> impl Strategy<Value = DVec3> {
+    prop_oneof![
+        (0_usize..3, any::<bool>()).prop_map(|(k, s)| DVec3::AXES[k] * if s { 1.0 } else { -1.0 }),
+        (-1.0..1.0, -1.0..1.0, -1.0..1.0)
+            .prop_map(|(x, y, z)| DVec3::new(x, y, z))
+            .prop_filter("a direction", |d| d.length_squared() > 1e-3),
+    ]
+}
+
+/// The recipe of a shape: made only after the scene was scaled and moved, as sums of these numbers round.
+#[derive(Clone, Debug)]
+struct Recipe {
+    kind: u32,
+    a: DVec3,
+    b: DVec3,
+    c: DVec3,
+    axis: DVec3,
+    r: f64,
+    s: f64,
+}
+
+fn recipe() -> impl Strategy<Value = Recipe> {
+    (0_u32..9, point(), point(), point(), direction(), size(), size())
+        .prop_map(|(kind, a, b, c, axis, r, s)| Recipe { kind, a, b, c, axis, r, s })
+}
+
+impl Recipe {
+    fn shape(&self, scale: f64, offset: DVec3) -> Option<Shape> {
+        let at = |p: DVec3| p * scale + offset;
+        let (r, s) = (self.r * scale, self.s * scale);
+        let (a, b, c) = (at(self.a), at(self.b), at(self.c));
+        Some(match self.kind {
+            0 => Sphere::new(a, r).ok()?.into(),
+            1 => Plane::new(a, self.axis).ok()?.into(),
+            2 => Cuboid::new(a.min(b), a.max(b)).ok()?.into(),
+            3 => Cylinder::new(a, b, r).ok()?.into(),
+            4 => Cone::new(a, r, b, s).ok()?.into(),
+            5 => Torus::new(a, self.axis, r.max(s), r.min(s)).ok()?.into(),
+            6 => Disk::new(a, self.axis, r).ok()?.into(),
+            7 => Triangle::new(a, b, c).ok()?.into(),
+            _ => {
+                let custom: std::sync::Arc<dyn Primitive> = std::sync::Arc::new(Sphere::new(b, s).ok()?);
+                custom.into()
+            }
+        })
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Scene {
+    recipes: Vec<Recipe>,
+    /// Indices of recipes that are added again: ties.
+    again: Vec<prop::sample::Index>,
+    scale: f64,
+    offset: DVec3,
+}
+
+fn scene(most: usize) -> impl Strategy<Value = Scene> {
+    (
+        prop::collection::vec(recipe(), 1..most),
+        prop::collection::vec(any::<prop::sample::Index>(), 0..4),
+        prop_oneof![
+            Just(1.0),
+            (-30_i32..=30).prop_map(|e| 2_f64.powi(e)),
+            (-9.0..9.0).prop_map(|e| 10_f64.powf(e))
+        ],
+        prop_oneof![Just(0.0), Just(1e3), Just(1e6), Just(1e9)],
+        direction(),
+    )
+        .prop_map(|(recipes, again, scale, distance, axis)| Scene {
+            recipes,
+            again,
+            scale,
+            offset: axis * distance,
+        })
+}
+
+impl Scene {
+    fn geometries(&self) -> (Geometry, Geometry) {
+        let mut builder = Geometry::builder();
+        for recipe in self.recipes.iter().chain(self.again.iter().map(|i| i.get(&self.recipes))) {
+            if let Some(shape) = recipe.shape(self.scale, self.offset) {
+                builder.push(shape);
+            }
+        }
+        (builder.clone().build(), builder.accelerated(false).build())
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Cast {
+    from: DVec3,
+    to: DVec3,
+    stretch: f64,
+    min: f64,
+    max: f64,
+}
+
+fn cast() -> impl Strategy<Value = Cast> {
+    let from = prop_oneof![
+        point(),
+        point().prop_map(|p| p * 10.0),
+        (direction(), 0.0..9.0).prop_map(|(d, e)| d * 10_f64.powf(e))
+    ];
+    let to = prop_oneof![3 => point(), 1 => point().prop_map(|p| p * 3.0)];
+    let stretch = prop_oneof![Just(1.0), (-60_i32..60).prop_map(|e| 2_f64.powi(e)), 0.1..10.0];
+    let min = prop_oneof![4 => Just(0.0), 1 => Just(f64::NEG_INFINITY), 1 => -2.0..2.0];
+    let max = prop_oneof![4 => Just(f64::INFINITY), 1 => 0.0..4.0];
+    (from, to, stretch, min, max).prop_map(|(from, to, stretch, min, max)| Cast {
+        from,
+        to,
+        stretch,
+        min,
+        max,
+    })
+}
+
+impl Cast {
+    fn ray(&self, scene: &Scene) -> (Ray, Interval) {
+        let (from, to) = (self.from * scene.scale + scene.offset, self.to * scene.scale + scene.offset);
+        let ray = Ray::new(from, (to - from) * self.stretch);
+        (ray, Interval::new(self.min / self.stretch, self.max / self.stretch))
+    }
+}
+
+fn all_crossings(geometry: &Geometry, ray: &Ray, within: Interval) -> Vec<Found> {
+    let mut all = Vec::new();
+    geometry.crossings(ray, within, None, &mut |found| {
+        all.push(found);
+        ControlFlow::Continue(())
+    });
+    // Stable: the order among those of one object is kept.
+    all.sort_by_key(|found| found.object);
+    all
+}
+
+/// Each ray and its neighbours, of which there are enough for packets.
+fn compare_batches(geometry: &Geometry, rays: &[(Ray, Interval)]) -> Result<(), TestCaseError> {
+    let mut all = Vec::new();
+    let mut within = Vec::new();
+    for (ray, interval) in rays {
+        all.push(*ray);
+        within.push(*interval);
+    }
+    for (ray, interval) in rays.iter().take(4) {
+        let side = ray.direction.any_orthogonal_vector() * 0.003;
+        for i in 0..37 {
+            all.push(Ray::new(ray.origin, ray.direction + side * f64::from(i)));
+            within.push(*interval);
+        }
+    }
+    let mut found = vec![None; all.len()];
+    let mut occluded = vec![false; all.len()];
+    geometry.nearest_many(&all, &within, &mut found);
+    geometry.occluded_many(&all, &within, &mut occluded);
+    for (i, ray) in all.iter().enumerate() {
+        prop_assert_eq!(found[i], geometry.nearest(ray, within[i]), "{:?} {:?}", ray, within[i]);
+        prop_assert_eq!(occluded[i], found[i].is_some());
+    }
+    Ok(())
+}
+
+/// Rays that begin at a point, and rays that end there.
+fn compare_cubes(fast: &Geometry, plain: &Geometry, rays: &[(Ray, Interval)]) -> Result<(), TestCaseError> {
+    let screens: Vec<Screen> = (0..plain.shapes().len())
+        .map(|object| [Screen::Opaque, Screen::Sheer, Screen::Sheer, Screen::Absent][object % 4])
+        .collect();
+    let path = |blocked: &dyn Fn(&mut dyn FnMut(Found)) -> bool| {
+        let mut crossed = Vec::new();
+        let blocked = blocked(&mut |found| crossed.push(found));
+        crossed.sort_by_key(|found| found.object);
+        if blocked { None } else { Some(crossed) }
+    };
+    for (first, _) in rays.iter().take(3) {
+        let Some(cube) = fast.cube_about(first.origin) else { continue };
+        for (ray, within) in rays {
+            let ray = Ray::new(first.origin, ray.direction);
+            let found = plain.nearest(&ray, *within);
+            prop_assert_eq!(fast.nearest_from(&cube, &ray, *within), found, "{:?} {:?}", ray, within);
+            let Some(found) = found else { continue };
+            let surface = plain.surface(&ray, found);
+            for side in [Side::Outside, Side::Inside] {
+                let from = surface.departure(found.object, found.hit, side);
+                let start = from.ray(DVec3::ZERO).0.origin;
+                let (back, within) = (Ray::new(start, first.origin - start), Interval::new(0.0, 1.0));
+                for screens in [&screens[..], &[]] {
+                    let truth = path(&|each| plain.blocked(&back, within, Some(&from), screens, each));
+                    prop_assert_eq!(
+                        &path(&|each| fast.blocked(&back, within, Some(&from), screens, each)),
+                        &truth
+                    );
+                    prop_assert_eq!(&path(&|each| fast.blocked_towards(&cube, &from, screens, each)), &truth);
+                }
+                let occluded = plain.occluded_leaving(&back, within, &from);
+                prop_assert_eq!(fast.blocked_towards(&cube, &from, &[], &mut |_| ()), occluded);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
+    let (fast, plain) = scene.geometries();
+    let rays: Vec<(Ray, Interval)> = casts.iter().map(|cast| cast.ray(scene)).collect();
+    for level in [Level::Portable, Level::Avx2] {
+        set_level(level);
+        compare_batches(&fast, &rays)?;
+        compare_cubes(&fast, &plain, &rays)?;
+        for (ray, within) in &rays {
+            let found = plain.nearest(ray, *within);
+            prop_assert_eq!(fast.nearest(ray, *within), found, "nearest {:?} {:?}", ray, within);
+            prop_assert_eq!(fast.occluded(ray, *within), plain.occluded(ray, *within));
+            prop_assert_eq!(fast.occluded(ray, *within), found.is_some());
+            prop_assert_eq!(all_crossings(&fast, ray, *within), all_crossings(&plain, ray, *within));
+            if let Some(found) = found {
+                let surface = plain.surface(ray, found);
+                for side in [Side::Outside, Side::Inside] {
+                    let from = surface.departure(found.object, found.hit, side);
+                    let (onward, within) = from.ray(ray.direction);
+                    let next = plain.nearest_leaving(&onward, within, &from);
+                    prop_assert_eq!(fast.nearest_leaving(&onward, within, &from), next);
+                    prop_assert_eq!(fast.occluded_leaving(&onward, within, &from), next.is_some());
+                    let (onward, within) = from.through(ray.direction);
+                    let next = plain.nearest_leaving(&onward, within, &from);
+                    prop_assert_eq!(fast.nearest_leaving(&onward, within, &from), next);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, ..ProptestConfig::default() })]
+
+    #[test]
+    fn small_scenes(scene in scene(12), casts in prop::collection::vec(cast(), 40)) {
+        compare(&scene, &casts)?;
+    }
+
+    #[test]
+    fn larger_scenes(scene in scene(300), casts in prop::collection::vec(cast(), 40)) {
+        compare(&scene, &casts)?;
+    }
+}
+
+/// Rays of any bits, legal or not, find the same and never panic.
+#[test]
+fn any_bits() {
+    let mut builder = Geometry::builder();
+    for i in 0..40 {
+        let x = f64::from(i);
+        builder.push(Sphere::new([x, x * 0.5, -x], 0.75).unwrap());
+    }
+    let (fast, plain) = (builder.clone().build(), builder.accelerated(false).build());
+    let odd = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        5e-324,
+        1e-310,
+        1e-200,
+        1e200,
+        f64::MAX,
+    ];
+    let pick = |i: usize| odd[i % odd.len()];
+    for i in 0..odd.len().pow(3) {
+        for j in 0..odd.len() {
+            let (a, b, c) = (i, i / odd.len(), i / odd.len() / odd.len());
+            let ray = Ray::new([pick(a), pick(b + j), pick(c)], [pick(c + j), pick(a + j), pick(b)]);
+            for within in [
+                Interval::FORWARD,
+                Interval::LINE,
+                Interval::new(pick(a), pick(j)),
+                Interval::new(1.0, pick(b)),
+            ] {
+                assert_eq!(fast.nearest(&ray, within), plain.nearest(&ray, within), "{ray:?} {within:?}");
+                assert_eq!(fast.occluded(&ray, within), plain.occluded(&ray, within), "{ray:?} {within:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Whitted's shading (doi:10.1145/358876.358882): the light of lamps that a surface sees, and what its mirror and its
+//! glass see.
+//!
+//! ```text
+//! colour = local + R mirror + (1 - R) transmit refracted,   R = reflect + (1 - reflect) F
+//! local  = ambient diffuse paint + sum over lamps of
+//!          share attenuation visibility lamp (diffuse paint cos + specular cos_mirror^shininess)
+//! ```
+//!
+//! Light is only added, never taken away: two shadows that overlap are as dark as one. The sum is taken in the order of
+//! the lamps.
+
+use crate::material::{Optics, Paint};
+use crate::medium::{Media, Medium};
+use crate::optics::{Refraction, mirror, refract};
+use crate::{Color, Material, Scene, Settings, Stats};
+use rt_core::glam::DVec3;
+use rt_core::{Departure, DirectionCube, Found, Interval, Ray, Side, Surface};
+
+/// Traces rays through a scene, one thread's worth.
+pub(crate) struct Tracer<'s> {
+    scene: &'s Scene,
+    max_depth: u32,
+    shadows: bool,
+    cutoff: f64,
+    media: Media,
+    /// What a shadow ray crossed: kept to be multiplied in an order that does not depend on the search.
+    filters: Vec<Color>,
+    pub stats: Stats,
+}
+
+/// A point that a ray hit, with all that spawned rays need.
+struct Vertex<'s> {
+    found: Found,
+    surface: Surface,
+    /// The unit direction of the ray that arrived.
+    direction: DVec3,
+    /// The shading normal, on the side of arrival.
+    normal: DVec3,
+    /// The side of arrival.
+    side: Side,
+    material: &'s Material,
+}
+
+impl<'s> Tracer<'s> {
+    pub fn new(scene: &'s Scene, settings: &Settings) -> Self {
+        let mut media = Media::default();
+        media.reset(&scene.around_eye);
+        Tracer {
+            scene,
+            max_depth: settings.max_depth,
+            shadows: settings.shadows,
+            cutoff: settings.cutoff,
+            media,
+            filters: Vec::new(),
+            stats: Stats::default(),
+        }
+    }
+
+    /// The colour that a ray from the eye sees.
+    pub fn eye(&mut self, ray: &Ray) -> Color {
+        let scene = self.scene;
+        let found = match &scene.seen_by_eye {
+            Some(cube) => scene.geometry.nearest_from(cube, ray, Interval::FORWARD),
+            None => scene.geometry.nearest(ray, Interval::FORWARD),
+        };
+        self.seen_by_eye(ray, found)
+    }
+
+    /// The nearest hits of rays from the eye.
+    pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
+        let scene = self.scene;
+        match &scene.seen_by_eye {
+            Some(cube) => {
+                for ((ray, within), found) in rays.iter().zip(within).zip(found) {
+                    *found = scene.geometry.nearest_from(cube, ray, *within);
+                }
+            }
+            None => scene.geometry.nearest_many(rays, within, found),
+        }
+    }
+
+    /// The same for a ray whose nearest hit is known.
+    pub fn seen_by_eye(&mut self, ray: &Ray, found: Option<Found>) -> Color {
+        self.stats.eye_rays += 1;
+        match found {
+            None => self.scene.background,
+            Some(found) => {
+                self.stats.eye_hits += 1;
+                self.shade(ray, found, 1, 1.0)
+            }
+        }
+    }
+
+    /// The colour of a hit.
+    fn shade(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
+        let scene = self.scene;
+        let surface = scene.geometry.surface(ray, found);
+        let direction = ray.direction.normalize();
+        let facing = if direction.dot(surface.shading_normal) > 0.0 {
+            -surface.shading_normal
+        } else {
+            surface.shading_normal
+        };
+        let vertex = Vertex {
+            found,
+            direction,
+            normal: facing,
+            side: Side::of_arrival(direction, surface.normal),
+            material: &scene.materials[scene.objects[found.object as usize].material as usize],
+            surface,
+        };
+        let local = self.local(&vertex);
+        if depth >= self.max_depth || vertex.material.is_matt() {
+            return local;
+        }
+        local + self.spawned(&vertex, depth, weight)
+    }
+
+    /// Ambient light and the light of the lamps.
+    fn local(&mut self, v: &Vertex) -> Color {
+        let scene = self.scene;
+        let material = v.material;
+        if material.diffuse == 0.0 && material.specular == 0.0 {
+            return Color::BLACK;
+        }
+        let paint = match material.paint {
+            Paint::Color(color) => color,
+            Paint::Texture(texture) => {
+                let object = v.found.object;
+                let mapping = scene.mappings[object as usize];
+                scene.textures[texture as usize].color(&v.surface, mapping, object)
+            }
+        };
+        let body = paint * material.diffuse;
+        let mut sum = scene.ambient * body;
+        let from = v.surface.departure(v.found.object, v.found.hit, v.side);
+        for (light, cube) in scene.lights.iter().zip(&scene.seen_by_lamp) {
+            let to_light = light.position() - v.surface.point;
+            let distance = to_light.length();
+            let to_light = to_light / distance;
+            let cosine = v.normal.dot(to_light);
+            // Not `<=`: a lamp at the very point has no direction, NaN, and gives nothing.
+            if !(cosine > 0.0) {
+                continue;
+            }
+            let share = light.share(-to_light);
+            if share == 0.0 {
+                continue;
+            }
+            let mut arriving = light.color() * (share * light.attenuation().at(distance));
+            if self.shadows {
+                match self.visibility(&from, light.position(), cube.as_ref()) {
+                    None => continue,
+                    Some(visible) => arriving *= visible,
+                }
+            }
+            sum += arriving * body * cosine;
+            if material.specular > 0.0 {
+                let along = (v.normal * (2.0 * cosine) - to_light).dot(-v.direction);
+                if along > 0.0 {
+                    sum += arriving * (material.specular * libm::pow(along, material.shininess));
+                }
+            }
+        }
+        sum
+    }
+
+    /// What a straight ray to a lamp leaves of its light; `None` when something opaque is in the way.
+    fn visibility(&mut self, from: &Departure, lamp: DVec3, cube: Option<&DirectionCube>) -> Option<Color> {
+        self.stats.shadow_rays += 1;
+        let scene = self.scene;
+        let filters = &mut self.filters;
+        filters.clear();
+        let transmit =
+            |object: u32| scene.materials[scene.objects[object as usize].material as usize].transmit;
+        let mut each = |found: Found| filters.push(transmit(found.object));
+        let blocked = match cube {
+            Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
+            None => {
+                let start = from.ray(DVec3::ZERO).0.origin;
+                let (ray, within) = (Ray::new(start, lamp - start), Interval::new(0.0, 1.0));
+                match scene.all_opaque {
+                    true => scene.geometry.occluded_leaving(&ray, within, from),
+                    false => scene.geometry.blocked(&ray, within, Some(from), &scene.screens, &mut each),
+                }
+            }
+        };
+        if blocked {
+            self.stats.shadow_hits += 1;
+            return None;
+        }
+        if filters.len() > 2 {
+            // A product of two is the same either way round; more are multiplied in an order of their own.
+            filters.sort_unstable_by(|a, b| {
+                a.r.total_cmp(&b.r).then(a.g.total_cmp(&b.g)).then(a.b.total_cmp(&b.b))
+            });
+        }
+        Some(filters.iter().fold(Color::WHITE, |product, &left| product * left))
+    }
+
+    /// What the mirror ray and the transmitted ray bring.
+    fn spawned(&mut self, v: &Vertex, depth: u32, weight: f64) -> Color {
+        let material = v.material;
+        let transmits = !material.transmit.is_black();
+        let entering = v.side == Side::Outside;
+        let key = self.scene.objects[v.found.object as usize].material;
+        let medium = material.ior.map(|ior| Medium { key, ior });
+        // An opaque body with an index is never entered: its back is as good as its front.
+        let refraction = match medium {
+            None => Refraction::Through { direction: v.direction, reflectance: 0.0 },
+            Some(medium) => {
+                let boundary = self.media.boundary(medium, entering || !transmits);
+                refract(v.direction, v.normal, boundary.from, boundary.to)
+            }
+        };
+        let (reflect, through) = match (material.optics, refraction) {
+            (Optics::Fresnel, Refraction::Through { direction, reflectance }) => {
+                let reflect = material.reflect + (1.0 - material.reflect) * reflectance;
+                (Color::gray(reflect), Some((direction, material.transmit * (1.0 - reflect))))
+            }
+            (Optics::Fresnel, Refraction::Total) => (Color::WHITE, None),
+            (Optics::Plain, Refraction::Through { direction, .. }) => {
+                (Color::gray(material.reflect), Some((direction, material.transmit)))
+            }
+            // The mirror takes the place of the refracted ray.
+            (Optics::Plain, Refraction::Total) => (Color::gray(material.reflect) + material.transmit, None),
+        };
+        let mut sum = Color::BLACK;
+        if self.counts(reflect, weight) {
+            self.stats.reflected_rays += 1;
+            let from = v.surface.departure(v.found.object, v.found.hit, v.side);
+            let (ray, within) = from.ray(mirror(v.direction, v.normal));
+            sum += reflect * self.follow(&ray, within, &from, depth + 1, weight * reflect.max_channel());
+        }
+        if let Some((direction, through)) = through
+            && self.counts(through, weight)
+        {
+            self.stats.refracted_rays += 1;
+            let change = medium.map(|medium| self.media.cross(medium, entering));
+            let from = v.surface.departure(v.found.object, v.found.hit, v.side.other());
+            let (ray, within) = from.through(direction);
+            sum += through * self.follow(&ray, within, &from, depth + 1, weight * through.max_channel());
+            if let Some(change) = change {
+                self.media.undo(change);
+            }
+        }
+        sum
+    }
+
+    /// Whether a ray of this share is worth tracing.
+    fn counts(&self, share: Color, weight: f64) -> bool {
+        !share.is_black() && weight * share.max_channel() >= self.cutoff
+    }
+
+    /// The colour that a spawned ray sees.
+    fn follow(&mut self, ray: &Ray, within: Interval, from: &Departure, depth: u32, weight: f64) -> Color {
+        match self.scene.geometry.nearest_leaving(ray, within, from) {
+            None => self.scene.background,
+            Some(found) => {
+                self.stats.secondary_hits += 1;
+                self.shade(ray, found, depth, weight)
+            }
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Any numbers as a disk and as a ray: the contract of a shape holds.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rt_core::shape::Disk;
+use rt_fuzz::Case;
+
+fuzz_target!(|case: Case| {
+    let [a, b, _] = case.points.map(|p| p.value());
+    let [l, _] = case.lengths.map(|l| l.value());
+    case.check(Disk::new(a, b, l), false);
+});

@@ -1,0 +1,12 @@
+//! Any numbers as a triangle and as a ray: the contract of a shape holds.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rt_core::shape::Triangle;
+use rt_fuzz::Case;
+
+fuzz_target!(|case: Case| {
+    let [a, b, c] = case.points.map(|p| p.value());
+    let [_, _] = case.lengths.map(|l| l.value());
+    case.check(Triangle::new(a, b, c), false);
+});

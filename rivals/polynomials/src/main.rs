@@ -1,0 +1,158 @@
+//! Polynomial solvers side by side: time, wrong counts and error of each on the hard quartics.
+//!
+//!     cargo run --release --bin polynomials [quartics.jsonl]
+//!
+//! Every answer is judged before anything is timed. The solvers take turns, pass by pass, so that a change of clock or a
+//! neighbour on the machine meets all of them; the figure is the least time of all passes, per polynomial.
+
+use rt_core::Interval;
+use rt_core::poly::{self, Method};
+use serde_json::Value;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// A quartic with its real roots and what its count can bear.
+struct Case {
+    family: String,
+    c: [f64; 5],
+    roots: Vec<(f64, u32)>,
+    margin: f64,
+}
+
+/// At most four roots, without allocation.
+#[derive(Clone, Copy, Default)]
+struct Answer {
+    roots: [(f64, u32); 8],
+    count: usize,
+}
+
+impl Answer {
+    fn add(&mut self, x: f64, multiplicity: u32) {
+        if self.count < self.roots.len() {
+            self.roots[self.count] = (x, multiplicity);
+            self.count += 1;
+        }
+    }
+}
+
+type Solver = (&'static str, fn(&[f64; 5]) -> Answer);
+
+fn by(method: Method, c: &[f64; 5]) -> Answer {
+    let mut answer = Answer::default();
+    for root in poly::roots(*c, Interval::LINE, method).iter() {
+        answer.add(root.x, root.multiplicity);
+    }
+    answer
+}
+
+fn of(list: impl IntoIterator<Item = f64>) -> Answer {
+    let mut answer = Answer::default();
+    list.into_iter().for_each(|x| answer.add(x, 1));
+    answer
+}
+
+fn polycool(c: &[f64; 5]) -> Answer {
+    let bound = 1.0 + c[..4].iter().fold(0.0f64, |m, x| m.max((x / c[4]).abs()));
+    if !bound.is_finite() {
+        return Answer::default();
+    }
+    of(polycool::Poly::new(*c).roots_between(-bound, bound, 1e-15))
+}
+
+const SOLVERS: &[Solver] = &[
+    ("kurbo", |c| of(kurbo::common::solve_quartic(c[0], c[1], c[2], c[3], c[4]))),
+    ("ours", |c| by(Method::Certified, c)),
+    ("ferrari", |c| by(Method::Ferrari, c)),
+    ("graphics gems", |c| by(Method::GraphicsGems, c)),
+    ("roots", |c| of(roots::find_roots_quartic(c[4], c[3], c[2], c[1], c[0]).as_ref().iter().copied())),
+    ("polycool", polycool),
+];
+
+fn load(path: &str) -> Vec<Case> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let case = |line: &str| {
+        let row: Value = serde_json::from_str(line).expect("JSON");
+        let roots = row["roots"].as_array().expect("roots");
+        Case {
+            family: row["family"].as_str().expect("family").into(),
+            c: std::array::from_fn(|i| row["c"][i].as_f64().expect("coefficient")),
+            roots: roots
+                .iter()
+                .map(|r| (r[0].as_str().expect("root").parse().expect("root"), r[1].as_u64().expect("times") as u32))
+                .collect(),
+            margin: row["margin"].as_f64().expect("margin"),
+        }
+    };
+    text.lines().filter(|l| !l.trim().is_empty()).map(case).collect()
+}
+
+/// Wrong counts, and the errors of simple roots in units of 2^-53 where the count is right.
+fn judge(cases: &[&Case], solver: fn(&[f64; 5]) -> Answer) -> (usize, Vec<f64>) {
+    let (mut wrong, mut errors) = (0, vec![]);
+    for case in cases {
+        let answer = solver(&case.c);
+        let mut got: Vec<(f64, u32)> = answer.roots[..answer.count].to_vec();
+        got.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let listed: u32 = got.iter().map(|r| r.1).sum();
+        let degree: u32 = case.roots.iter().map(|r| r.1).sum();
+        let multiple = case.roots.iter().any(|r| r.1 > 1);
+        if got.len() == case.roots.len() {
+            for (g, w) in got.iter().zip(&case.roots) {
+                if w.1 == 1 && w.0 != 0.0 {
+                    errors.push(((g.0 - w.0) / w.0).abs() * 2f64.powi(53));
+                }
+            }
+        } else if (case.margin > 1e-24 || multiple) && listed != degree {
+            wrong += 1;
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    (wrong, errors)
+}
+
+/// Least time of one pass over all cases, in ns per case, of each solver.
+fn times(cases: &[&Case], solvers: &[Solver], seconds: f64) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; solvers.len()];
+    let begun = Instant::now();
+    let mut passes = 0;
+    while begun.elapsed().as_secs_f64() < seconds || passes < 5 {
+        for (least, (_, solver)) in least.iter_mut().zip(solvers) {
+            let start = Instant::now();
+            for case in cases {
+                black_box(solver(black_box(&case.c)));
+            }
+            *least = least.min(start.elapsed().as_nanos() as f64 / cases.len() as f64);
+        }
+        passes += 1;
+    }
+    least
+}
+
+fn main() {
+    let path = std::env::args().nth(1).unwrap_or_else(|| "../shared/cases/quartics.jsonl".into());
+    let detail = std::env::args().any(|a| a == "families");
+    let all = load(&path);
+    let mut sets: Vec<(String, Vec<&Case>)> = vec![
+        ("sample_F".into(), all.iter().filter(|c| c.family == "sample_F").collect()),
+        ("torus".into(), all.iter().filter(|c| c.family.starts_with("torus")).collect()),
+        ("all".into(), all.iter().collect()),
+    ];
+    if detail {
+        let mut names: Vec<&String> = all.iter().map(|c| &c.family).collect();
+        names.dedup();
+        sets.extend(names.iter().map(|&n| (n.clone(), all.iter().filter(|c| &c.family == n).collect())));
+    }
+    let solvers = if detail { &SOLVERS[..2] } else { SOLVERS };
+    println!("{:<22}{:<15}{:>8}{:>8}{:>7}{:>10}{:>10}", "set", "solver", "ns", "/kurbo", "wrong", "p99 (u)", "max (u)");
+    for (name, cases) in sets.iter().filter(|s| !s.1.is_empty()) {
+        let judged: Vec<_> = solvers.iter().map(|(_, s)| judge(cases, *s)).collect();
+        let ns = times(cases, solvers, if detail { 0.15 } else { 3.0 });
+        for ((solver, ns_one), (wrong, errors)) in solvers.iter().zip(&ns).zip(&judged) {
+            let at = |q: f64| errors.get(((errors.len() as f64 * q) as usize).min(errors.len().max(1) - 1)).copied().unwrap_or(0.0);
+            println!(
+                "{:<22}{:<15}{:>8.0}{:>8.2}{:>7}{:>10.3}{:>10.3}",
+                name, solver.0, ns_one, ns_one / ns[0], wrong, at(0.99), at(1.0)
+            );
+        }
+    }
+}
