@@ -10,7 +10,7 @@ mod split;
 use super::{Roots, cubic};
 use crate::Interval;
 
-pub use certified::{double, quartic};
+pub use certified::{double, quartic, tier};
 pub use ferrari::ferrari;
 pub use graphics_gems::graphics_gems;
 
