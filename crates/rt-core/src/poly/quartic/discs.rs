@@ -38,7 +38,8 @@ fn real(f: &Factor, d: f64) -> [f64; 2] {
     let h = -0.5 * f.linear;
     let s = sqrt(d);
     let q = if h >= 0.0 { h + s } else { h - s };
-    [q, f.constant / q]
+    // Plus zero: the root 0 has no sign.
+    [q, f.constant / q + 0.0]
 }
 
 /// `p(x)` by compensated Horner (Graillat, Langlois and Louvet 2005): within u |p| + 2^-100 of the sum of the magnitudes of

@@ -2,6 +2,7 @@
 
 mod certified;
 mod discs;
+mod factors;
 mod ferrari;
 mod graphics_gems;
 mod split;
@@ -9,7 +10,7 @@ mod split;
 use super::{Roots, cubic};
 use crate::Interval;
 
-pub use certified::{double, quartic};
+pub use certified::{double, quartic, tier};
 pub use ferrari::ferrari;
 pub use graphics_gems::graphics_gems;
 

@@ -15,6 +15,14 @@ pub(super) struct Factor {
     pub constant: f64,
 }
 
+impl Factor {
+    /// The factor whose roots are the reciprocals of these.
+    #[inline(always)]
+    pub fn reversed(self) -> Self {
+        Factor { linear: self.linear / self.constant, constant: 1.0 / self.constant }
+    }
+}
+
 /// Two factors of `x^4 + a x^3 + b x^2 + c x + d`; `None` where the arithmetic breaks down.
 #[inline(always)]
 pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
@@ -26,11 +34,20 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
     let r = d - t * (c - t * (b - 3.0 * t2));
     // (z^2 + s z + v1) (z^2 - s z + v2), w = s^2: w^3 + 2 p w^2 + (p^2 - 4 r) w - q^2 = 0; w = y - 2p/3.
     let p2 = p * p;
-    let y = isolated_root(-(p2 / 3.0 + 4.0 * r), p * (8.0 / 3.0 * r - 2.0 / 27.0 * p2) - q * q);
-    let w = y - 2.0 / 3.0 * p;
+    let m = -(p2 / 3.0 + 4.0 * r);
+    let mut y = isolated_root(m, p * (8.0 / 3.0 * r - 2.0 / 27.0 * p2) - q * q);
     // v1 + v2 = p + w, v2 - v1 = d with d^2 = (p + w)^2 - 4 r and s d = q.
-    let sum = p + w;
-    let e = sum * sum - 4.0 * r;
+    let mut w = y - 2.0 / 3.0 * p;
+    let mut sum = p + w;
+    let mut e = sum * sum - 4.0 * r;
+    if w < 0.0 && e < 0.0 {
+        // Two pairs of complex roots, and this split would take the pairs apart: the greatest of the other two
+        // roots of the resolvent keeps them.
+        y = 0.5 * (sqrt((-3.0 * y * y - 4.0 * m).max(0.0)) - y);
+        w = y - 2.0 / 3.0 * p;
+        sum = p + w;
+        e = sum * sum - 4.0 * r;
+    }
     let (s, difference) = if w * (sum * sum + 4.0 * r.abs()) > e * (y.abs() + p.abs()) {
         let s = sqrt(w);
         (s, q / s)
@@ -54,7 +71,7 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
         core::mem::swap(&mut f, &mut g);
     }
     // The factor of the smaller roots lost its digits in the shift: take it from the product instead.
-    if a != 0.0 {
+    if a != 0.0 || d == 0.0 {
         g.constant = d / f.constant;
         g.linear = (c - f.linear * g.constant) / f.constant;
         f.linear = a - g.linear;
