@@ -113,14 +113,32 @@ impl Task for Careful {
     }
 }
 #[doc(hidden)]
-pub fn tier(c: [f64; 5]) -> usize { struct T([f64;5]); impl Task for T { type Output = usize; #[inline(always)] fn run<P: Product>(self) -> usize { tier_of::<P>(&self.0) } } run(T(c)) }
+pub fn tier(c: [f64; 5]) -> usize {
+    struct T([f64; 5]);
+    impl Task for T {
+        type Output = usize;
+        #[inline(always)]
+        fn run<P: Product>(self) -> usize {
+            tier_of::<P>(&self.0)
+        }
+    }
+    run(T(c))
+}
 fn tier_of<P: Product>(c: &[f64; 5]) -> usize {
     let Some((y, _, spread)) = balanced(c) else { return 3 };
     let monic = |y: &[f64; 5]| {
         let inverse = 1.0 / y[4];
         split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse)
     };
-    if monic(&y).and_then(|s| discs::roots::<P>(&y, &s)).is_some() { return 0; }
-    if spread && monic(&[y[4], y[3], y[2], y[1], y[0]]).and_then(|f| discs::roots::<P>(&y, &f.map(|f| f.reversed()))).is_some() { return 0; }
+    if monic(&y).and_then(|s| discs::roots::<P>(&y, &s)).is_some() {
+        return 0;
+    }
+    if spread
+        && monic(&[y[4], y[3], y[2], y[1], y[0]])
+            .and_then(|f| discs::roots::<P>(&y, &f.map(|f| f.reversed())))
+            .is_some()
+    {
+        return 0;
+    }
     if factors::roots::<P>(&y).is_some() { 1 } else { 2 }
 }
