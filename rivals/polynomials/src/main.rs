@@ -150,7 +150,7 @@ fn main() {
         for ((solver, ns_one), (wrong, errors)) in solvers.iter().zip(&ns).zip(&judged) {
             let at = |q: f64| errors.get(((errors.len() as f64 * q) as usize).min(errors.len().max(1) - 1)).copied().unwrap_or(0.0);
             println!(
-                "{:<22}{:<15}{:>8.0}{:>8.2}{:>7}{:>10.3}{:>10.3}",
+                "{:<22}{:<15}{:>8.0}{:>8.2}{:>7} {:>9.2e} {:>9.2e}",
                 name, solver.0, ns_one, ns_one / ns[0], wrong, at(0.99), at(1.0)
             );
         }
