@@ -71,19 +71,24 @@ fn monotone_roots<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
         if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() };
     let mut from = left;
     for c in critical.iter() {
-        let mut knot = critical_knot::<P>(p, c.x);
-        if knot.sign == 0 || exact && knot.reach == 0.0 {
-            // In doubt: `reach` 0 marks a sign that took more than double-double.
-            if let Some(multiplicity) =
-                if exact { multiple_root::<P>(p, c.x) } else { Some(c.multiplicity + 1) }
-            {
-                roots.push(c.x, multiplicity);
-                // Past a root of even order the sign is the one before, past one of odd order the other.
-                knot.sign = if multiplicity % 2 == 0 { from.sign } else { -from.sign };
-                from = knot;
-                continue;
+        let knot = match plain_knot::<P>(p, c.x) {
+            Some(knot) => knot,
+            None => {
+                let multiple = multiple_root::<P>(p, c.x);
+                let knot = if multiple.is_none() { developed_knot::<P>(p, c.x) } else { None };
+                let multiple =
+                    multiple.or(if knot.is_none() && !exact { Some(c.multiplicity + 1) } else { None });
+                if let Some(multiplicity) = multiple {
+                    roots.push(c.x, multiplicity);
+                    // Past a root of even order the sign is the one before, past one of odd order the other.
+                    let sign = if multiplicity % 2 == 0 { from.sign } else { -from.sign };
+                    from = Knot { x: c.x, sign, reach: 0.0 };
+                    continue;
+                }
+                // Not a multiple root, and too near to one to say on which side: as if on neither.
+                knot.unwrap_or(Knot { x: c.x, sign: from.sign, reach: 0.0 })
             }
-        }
+        };
         if from.sign * knot.sign < 0 {
             let root = refine::<P>(p, from, knot);
             roots.push(root, 1);
@@ -107,14 +112,20 @@ fn sign_of(value: Double) -> i32 {
     }
 }
 
-/// The sign at a critical point.
-fn critical_knot<P: Product>(p: &Polynomial, x: Double) -> Knot {
+/// The sign at a critical point, if double-double tells it.
+#[inline(always)]
+fn plain_knot<P: Product>(p: &Polynomial, x: Double) -> Option<Knot> {
     let v = p.at::<P>(x);
-    if v.value.high.abs() > v.error {
-        let reach = sqrt((v.value.high / v.curvature).abs());
-        return Knot { x, sign: sign_of(v.value), reach: ldexp(reach, v.exponent) };
+    if v.value.high.abs() <= v.error {
+        return None;
     }
-    // About the rounded point the value, the slope and the curvature are exact to double-double each.
+    let reach = sqrt((v.value.high / v.curvature).abs());
+    Some(Knot { x, sign: sign_of(v.value), reach: ldexp(reach, v.exponent) })
+}
+
+/// The sign at a critical point, from the polynomial developed about it: about the rounded point the value, the slope and
+/// the curvature are exact to double-double each.
+fn developed_knot<P: Product>(p: &Polynomial, x: Double) -> Option<Knot> {
     let about = shifted::<P>(p, x.high);
     let mut y = Double::from(x.low);
     let v = about.at::<P>(y);
@@ -123,8 +134,8 @@ fn critical_knot<P: Product>(p: &Polynomial, x: Double) -> Knot {
         y = y + step;
     }
     let v = about.at::<P>(y);
-    let sign = if v.value.high.abs() > v.error { sign_of(v.value) } else { 0 };
-    Knot { x, sign, reach: 0.0 }
+    let knot = Knot { x, sign: sign_of(v.value), reach: 0.0 };
+    if v.value.high.abs() > v.error { Some(knot) } else { None }
 }
 
 /// The root between two places of opposite sign, to about 2^-60 of its size.

@@ -1,8 +1,7 @@
 //! Degree three.
 
-use super::{Roots, bracket};
+use super::{Roots, quartic};
 use crate::Interval;
-use crate::double::Double;
 use crate::kernel::{Product, Task, run};
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
@@ -10,17 +9,18 @@ pub fn cubic(c: [f64; 4], within: Interval) -> Roots<3> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();
     }
-    run(Careful { c }).rounded().within(within)
+    run(Solve { c }).within(within)
 }
 
-struct Careful {
+struct Solve {
     c: [f64; 4],
 }
 
-impl Task for Careful {
-    type Output = Roots<3, Double>;
+impl Task for Solve {
+    type Output = Roots<4>;
     #[inline(always)]
     fn run<P: Product>(self) -> Self::Output {
-        bracket::solve::<P, 3>(&self.c.map(Double::from))
+        let [c0, c1, c2, c3] = self.c;
+        quartic::all_roots::<P>(&[c0, c1, c2, c3, 0.0])
     }
 }

@@ -79,6 +79,11 @@ impl Expansion {
         }
     }
 
+    /// A number of the same sign.
+    fn sign(&self) -> f64 {
+        if self.len == 0 { 0.0 } else { self.part[self.len - 1] }
+    }
+
     fn is_zero(&self) -> bool {
         self.len == 0
     }
@@ -154,7 +159,7 @@ pub(super) fn multiple_root<P: Product>(p: &Polynomial, x: Double) -> Option<u32
             return Some(multiplicity);
         }
     }
-    if p.degree() == 4 && is_square::<P>(&c) { Some(2) } else { None }
+    if p.degree() == 4 && is_real_square::<P>(&c) && near_root(&c, local.y.high) { Some(2) } else { None }
 }
 
 /// The fraction with a denominator up to 2^27 that is nearest to `y`, `1 <= |y| < 2`, if it is nearer than any two such
@@ -220,8 +225,8 @@ fn binomial(n: usize, k: usize) -> f64 {
 
 /// Whether the quartic is a constant times the square of a quadratic:
 /// `c4 (x^2 + u x + v)^2` has `c1^2 c4 = c3^2 c0` and `4 c4 c2 c3 = c3^3 + 8 c4^2 c1`, or `c3 = c1 = 0` and
-/// `c2^2 = 4 c4 c0`.
-fn is_square<P: Product>(c: &[f64; 5]) -> bool {
+/// `c2^2 = 4 c4 c0`. Its roots are real when `u^2 >= 4 v`: `(c3^3 - 16 c4^2 c1) c3 >= 0`, or `c2 c4 <= 0`.
+fn is_real_square<P: Product>(c: &[f64; 5]) -> bool {
     let product = |factors: &[f64]| {
         let mut e = Expansion::zero();
         e.add(1.0);
@@ -231,7 +236,7 @@ fn is_square<P: Product>(c: &[f64; 5]) -> bool {
     if c3 == 0.0 {
         let mut e = product(&[c2, c2]);
         e.add_all(&product(&[-4.0, c4, c0]));
-        return c1 == 0.0 && e.is_zero();
+        return c1 == 0.0 && (c2 > 0.0) != (c4 > 0.0) && e.is_zero();
     }
     let mut e = product(&[c1, c1, c4]);
     e.add_all(&product(&[-c3, c3, c0]));
@@ -241,5 +246,20 @@ fn is_square<P: Product>(c: &[f64; 5]) -> bool {
     let mut e = product(&[4.0, c4, c2, c3]);
     e.add_all(&product(&[-c3, c3, c3]));
     e.add_all(&product(&[-8.0, c4, c4, c1]));
-    e.is_zero()
+    if !e.is_zero() {
+        return false;
+    }
+    let mut e = product(&[c3, c3, c3]);
+    e.add_all(&product(&[-16.0, c4, c4, c1]));
+    e.sign() * c3 >= 0.0
+}
+
+/// Whether the square of a quadratic vanishes at `y` rather than at its other roots: in plain arithmetic, half of whose digits
+/// are left at a double root.
+fn near_root(c: &[f64; 5], y: f64) -> bool {
+    let value = (((c[4] * y + c[3]) * y + c[2]) * y + c[1]) * y + c[0];
+    let y = y.abs();
+    let size = (((c[4].abs() * y + c[3].abs()) * y + c[2].abs()) * y + c[1].abs()) * y + c[0].abs();
+    // Six roundings of the sum of the magnitudes.
+    value.abs() <= 8.0 * f64::EPSILON * size
 }

@@ -31,11 +31,69 @@ impl Task for Quartic {
     type Output = Roots<4>;
     #[inline(always)]
     fn run<P: Product>(self) -> Self::Output {
-        match quick::<P>(&self.c) {
-            Some(roots) => roots,
-            None => careful::<P>(&self.c),
-        }
+        all_roots::<P>(&self.c)
     }
+}
+
+/// All real roots of a polynomial of any degree up to four, finite coefficients.
+#[inline(always)]
+pub(in super::super) fn all_roots<P: Product>(c: &[f64; 5]) -> Roots<4> {
+    let quick = if c[0] != 0.0 && c[4] != 0.0 { quick::<P>(c) } else { lower::<P>(c) };
+    match quick {
+        Some(roots) => roots,
+        None => careful::<P>(c),
+    }
+}
+
+/// Zero roots taken out, and lower degrees: a cubic is a quartic divided by `x`.
+#[inline(never)]
+fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
+    let zeros = c.iter().take_while(|&&c| c == 0.0).count();
+    let degree = c.iter().rposition(|&c| c != 0.0)?;
+    let mut d = [0.0; 5];
+    d.iter_mut().zip(c.iter().skip(zeros)).for_each(|(d, &c)| *d = c);
+    let with_zeros = |roots: Roots<4>| {
+        let mut all = Roots::default();
+        roots.iter().filter(|root| root.x != 0.0).for_each(|root| all.insert(root.x, root.multiplicity));
+        if zeros > 0 {
+            all.insert(0.0, zeros as u32);
+        }
+        all
+    };
+    match degree - zeros {
+        0 => Some(with_zeros(Roots::default())),
+        1 => {
+            let x = -d[0] / d[1];
+            // Too small for any digits, or too large to be listed.
+            if !x.is_normal() {
+                return None;
+            }
+            let mut roots = Roots::default();
+            roots.push(x, 1);
+            Some(with_zeros(roots))
+        }
+        2 => quadratic::<P>(&[d[0], d[1], d[2]]).map(with_zeros),
+        3 => quick::<P>(&[0.0, d[0], d[1], d[2], d[3]]).map(with_zeros),
+        _ => None,
+    }
+}
+
+/// The roots of a quadratic whose outer coefficients are not zero; `None` in doubt.
+#[inline(always)]
+pub(in super::super) fn quadratic<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
+    let e = c.map(exponent);
+    let near = |e: i32| (-400..=400).contains(&e);
+    // x = y 2^k with k half the difference of the outer exponents, and the leading coefficient brought to about 1.
+    let k = (e[0] - e[2]) >> 1;
+    if !(near(e[0]) && near(e[2]) && (c[1] == 0.0 || near(e[1])) && near(e[1].max(-400) - e[2] - k)) {
+        return None;
+    }
+    let s = exp2i(-e[2]);
+    let i = exp2i(-k);
+    let [n, m, l] = [c[0] * s * i * i, c[1] * s * i, c[2] * s];
+    // Squares and their low parts stay above 2^-968.
+    let small = m != 0.0 && exponent(m) < -200 || exponent(m) > 200;
+    if small { None } else { Some(factors::quadratic::<P>(n, m, l)?.scaled(exp2i(k))) }
 }
 
 #[inline(never)]
@@ -52,20 +110,34 @@ pub(in super::super) fn quick<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
         split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse)
     };
     let mut roots = monic(&y).and_then(|f| discs::roots::<P>(&y, &f));
-    if roots.is_none() && spread {
+    if roots.is_none() && spread > 4 && y[0] != 0.0 {
         // Roots of very different size: the small ones are the great ones of the reversed polynomial.
-        let reversed = monic(&[y[4], y[3], y[2], y[1], y[0]]);
-        roots = reversed.and_then(|f| discs::roots::<P>(&y, &f.map(|f| f.reversed())));
+        roots = reversed(&y, spread).and_then(|f| discs::roots::<P>(&y, &f));
     }
     let roots = roots.or_else(|| factors::roots::<P>(&y))?;
     Some(roots.scaled(exp2i(exponent)))
 }
 
+/// The factors by way of the reversed polynomial, whose greatest root is about `2^spread`.
+#[inline(never)]
+fn reversed(y: &[f64; 5], spread: i32) -> Option<[split::Factor; 2]> {
+    let s = exp2i(-spread);
+    let inverse = 1.0 / y[0];
+    let f = split::split(
+        y[4] * inverse * s * s * s * s,
+        y[3] * inverse * s * s * s,
+        y[2] * inverse * s * s,
+        y[1] * inverse * s,
+    )?;
+    Some(f.map(|f| f.reversed(exp2i(spread))))
+}
+
 /// The coefficients for `x = y 2^k`, divided by a power of two, so that the leading one is at least 1 and less than 2
-/// and the greatest root about 1; `k`; and whether the roots may differ much in size. `None` if some product in the
+/// and the greatest root about 1; `k`; and the logarithm of the ratio of the
+/// greatest root to the least but zero. `None` if some product in the
 /// evaluation at a root could leave the range in which products are exact.
 #[inline(always)]
-fn balanced(c: &[f64; 5]) -> Option<([f64; 5], i32, bool)> {
+fn balanced(c: &[f64; 5]) -> Option<([f64; 5], i32, i32)> {
     /// Below every difference of exponents.
     const NOTHING: i32 = -3000;
     let e = c.map(|c| if c == 0.0 { NOTHING } else { exponent(c) });
@@ -98,7 +170,7 @@ fn balanced(c: &[f64; 5]) -> Option<([f64; 5], i32, bool)> {
             y[i] = f64::from_bits(mantissa | (((shift + 1023).max(0) as u64) << 52));
         }
     }
-    Some((y, k, k - least > 4))
+    Some((y, k, k - least))
 }
 
 struct Careful {
@@ -111,34 +183,4 @@ impl Task for Careful {
     fn run<P: Product>(self) -> Self::Output {
         bracket::solve::<P, 4>(&self.c)
     }
-}
-#[doc(hidden)]
-pub fn tier(c: [f64; 5]) -> usize {
-    struct T([f64; 5]);
-    impl Task for T {
-        type Output = usize;
-        #[inline(always)]
-        fn run<P: Product>(self) -> usize {
-            tier_of::<P>(&self.0)
-        }
-    }
-    run(T(c))
-}
-fn tier_of<P: Product>(c: &[f64; 5]) -> usize {
-    let Some((y, _, spread)) = balanced(c) else { return 3 };
-    let monic = |y: &[f64; 5]| {
-        let inverse = 1.0 / y[4];
-        split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse)
-    };
-    if monic(&y).and_then(|s| discs::roots::<P>(&y, &s)).is_some() {
-        return 0;
-    }
-    if spread
-        && monic(&[y[4], y[3], y[2], y[1], y[0]])
-            .and_then(|f| discs::roots::<P>(&y, &f.map(|f| f.reversed())))
-            .is_some()
-    {
-        return 0;
-    }
-    if factors::roots::<P>(&y).is_some() { 1 } else { 2 }
 }

@@ -7,7 +7,9 @@
 //! the careful solver. When all roots lie near one place the polynomial is first developed about their mean.
 
 use super::super::Roots;
-use super::split::split;
+use super::super::exact::multiple_root;
+use super::super::scaled::Polynomial;
+use super::split::{Factor, split};
 use crate::double::{Double, two_sum};
 use crate::kernel::Product;
 use crate::math::exp2i;
@@ -18,14 +20,26 @@ const NOISE: f64 = exp2i(-99);
 /// The real roots of `c`, `1 <= |c4| < 2`, or `None` in doubt.
 #[inline(never)]
 pub(super) fn roots<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
-    let t = 0.25 * c[3] / c[4];
-    let far = (c[2] / c[4] - 6.0 * t * t).abs() < t * t;
-    if far {
-        let (origin, c, error) = developed::<P>(c, -t);
-        refined::<P>(&c, &error, origin)
-    } else {
-        refined::<P>(&c.map(Double::from), &[0.0; 4], 0.0)
+    let inverse = 1.0 / c[4];
+    let monic = |c: [f64; 4]| split(c[0] * inverse, c[1] * inverse, c[2] * inverse, c[3] * inverse);
+    let t = 0.25 * c[3] * inverse;
+    if c[0] == 0.0 {
+        // A cubic: the factor with the root 0 is x (c4 x + n).
+        let [f, g] = monic([c[0], c[1], c[2], c[3]])?;
+        let (f, g) = if g.constant == 0.0 { (f, g) } else { (g, f) };
+        let [c1, c2, c3, c4] = [c[1], c[2], c[3], c[4]].map(Double::from);
+        let second = [0.0, c[4], c[4] * g.linear];
+        let mut roots = refined::<P>(&[c1, c2, c3, c4, Double::ZERO], &[0.0; 4], 0.0, &f, &second, c)?;
+        roots.insert(0.0, 1);
+        return Some(roots);
     }
+    let (origin, d, error) = if (c[2] * inverse - 6.0 * t * t).abs() < t * t {
+        developed::<P>(c, -t)
+    } else {
+        (0.0, c.map(Double::from), [0.0; 4])
+    };
+    let [f, g] = monic([d[0].high, d[1].high, d[2].high, d[3].high])?;
+    refined::<P>(&d, &error, origin, &f, &[c[4], c[4] * g.linear, c[4] * g.constant], c)
 }
 
 /// A place near `s`, the coefficients in powers of `x` less that place, and bounds of their errors (the leading one is
@@ -96,14 +110,21 @@ fn total<const N: usize>(pairs: [(f64, f64); N]) -> Double {
     Double::sum(high[N - 1], rest)
 }
 
+/// The roots of `c`, whose coefficients have these errors, from the factors `f` and `second` (descending powers). `whole` is
+/// the given polynomial, of which `c` is the development about `origin`, perhaps divided by `x`.
 #[inline(always)]
-fn refined<P: Product>(c: &[Double; 5], error: &[f64; 4], origin: f64) -> Option<Roots<4>> {
-    let inverse = 1.0 / c[4].high;
-    let [f, g] = split(c[0].high * inverse, c[1].high * inverse, c[2].high * inverse, c[3].high * inverse)?;
+fn refined<P: Product>(
+    c: &[Double; 5],
+    error: &[f64; 4],
+    origin: f64,
+    f: &Factor,
+    second: &[f64; 3],
+    whole: &[f64; 5],
+) -> Option<Roots<4>> {
     // (x^2 + a x + b) (l x^2 + m x + n)
-    let l = c[4].high;
     let (mut a, mut b) = (Double::from(f.linear), Double::from(f.constant));
-    let (mut m, mut n) = (Double::product::<P>(g.linear, l), Double::product::<P>(g.constant, l));
+    let [l, m, n] = *second;
+    let (mut m, mut n) = (Double::from(m), Double::from(n));
     for _ in 0..4 {
         let am = a.mul::<P>(m);
         let an = a.mul::<P>(n);
@@ -153,12 +174,16 @@ fn refined<P: Product>(c: &[Double; 5], error: &[f64; 4], origin: f64) -> Option
         let em = n3 + l.abs() * ea + exp2i(-50) * dm.abs();
         let en = 2.0 * (q2 + ((ah * l).abs() + m.high.abs()) * ea + l.abs() * eb) + exp2i(-50) * dn.abs();
         let mut found = Roots::<4, Double>::default();
-        let first = factor::<P>(1.0, a, b, ea, eb, origin, &mut found);
-        let second = first && factor::<P>(l, m, n, em, en, origin, &mut found);
-        if second {
+        let known = factor::<P>(1.0, a, b, ea, eb, origin, whole, &mut found)
+            && if l == 0.0 {
+                linear::<P>(m, n, em, en, &mut found)
+            } else {
+                factor::<P>(l, m, n, em, en, origin, whole, &mut found)
+            };
+        if known {
             let mut roots = Roots::default();
             for root in found.iter() {
-                roots.insert((root.x + origin).to_f64(), 1);
+                roots.insert((root.x + origin).to_f64(), root.multiplicity);
             }
             return Some(roots);
         }
@@ -172,6 +197,7 @@ fn refined<P: Product>(c: &[Double; 5], error: &[f64; 4], origin: f64) -> Option
 
 /// Adds the roots of `l x^2 + m x + n` if their number and their digits are certain.
 #[inline(always)]
+#[allow(clippy::too_many_arguments)] // one factor: three coefficients, two errors and where it belongs
 fn factor<P: Product>(
     l: f64,
     m: Double,
@@ -179,6 +205,7 @@ fn factor<P: Product>(
     em: f64,
     en: f64,
     origin: f64,
+    whole: &[f64; 5],
     found: &mut Roots<4, Double>,
 ) -> bool {
     let h = m.scale_exact(-0.5);
@@ -189,7 +216,18 @@ fn factor<P: Product>(
     if d.high < -ed {
         return true;
     }
+    // Less than a thirty-second of a unit roundoff may be wrong before the last rounding.
+    let sharp = |z: Double, e: f64| e <= exp2i(-58) * (z.high + origin).abs();
     if !(d.high > ed) {
+        // A double root, if anything: only the exact test can say so.
+        let x = if l == 1.0 { h } else { h.div::<P>(Double::from(l)) };
+        let place = x + origin;
+        if em <= exp2i(-60) * (place.high * l).abs()
+            && multiple_root::<P>(&Polynomial::new(&whole.map(Double::from)), place) == Some(2)
+        {
+            found.push(x, 2);
+            return true;
+        }
         return false;
     }
     let s = d.sqrt::<P>();
@@ -198,12 +236,33 @@ fn factor<P: Product>(
     let (x, y) = (if l == 1.0 { q } else { q.div::<P>(Double::from(l)) }, n.div::<P>(q));
     let ex = eq / l.abs();
     let ey = (en + y.high.abs() * eq) / q.high.abs() + NOISE * y.high.abs();
-    // Less than a thirty-second of a unit roundoff may be wrong before the last rounding.
-    let sharp = |z: Double, e: f64| e <= exp2i(-58) * (z.high + origin).abs();
     if !(sharp(x, ex) && sharp(y, ey)) {
         return false;
     }
     found.push(x, 1);
     found.push(y, 1);
     true
+}
+
+/// Adds the root of `m x + n` if its digits are certain.
+#[inline(always)]
+fn linear<P: Product>(m: Double, n: Double, em: f64, en: f64, found: &mut Roots<4, Double>) -> bool {
+    let x = -n.div::<P>(m);
+    let error = (en + x.high.abs() * em) / m.high.abs() + NOISE * x.high.abs();
+    found.push(x, 1);
+    error <= exp2i(-58) * x.high.abs()
+}
+
+/// The real roots of `n + m x + l x^2`, all coefficients within 2^+-200 of 1 or `m` zero; `None` in doubt.
+#[inline(always)]
+pub(in super::super) fn quadratic<P: Product>(n: f64, m: f64, l: f64) -> Option<Roots<4>> {
+    let mut found = Roots::<4, Double>::default();
+    // The sign of the discriminant is exact outside the bound, and the error of the factor's coefficients zero.
+    let whole = [n, m, l, 0.0, 0.0];
+    if !factor::<P>(l, Double::from(m), Double::from(n), 0.0, 0.0, 0.0, &whole, &mut found) {
+        return None;
+    }
+    let mut roots = Roots::default();
+    found.iter().for_each(|root| roots.insert(root.x.to_f64() + 0.0, root.multiplicity));
+    Some(roots)
 }

@@ -10,7 +10,8 @@ mod split;
 use super::{Roots, cubic};
 use crate::Interval;
 
-pub use certified::{double, quartic, tier};
+pub(super) use certified::{all_roots, quadratic};
+pub use certified::{double, quartic};
 pub use ferrari::ferrari;
 pub use graphics_gems::graphics_gems;
 

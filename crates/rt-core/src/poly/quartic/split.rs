@@ -16,10 +16,11 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// The factor whose roots are the reciprocals of these.
+    /// The factor whose roots are the reciprocals of these times `scale`, a power of two.
     #[inline(always)]
-    pub fn reversed(self) -> Self {
-        Factor { linear: self.linear / self.constant, constant: 1.0 / self.constant }
+    pub fn reversed(self, scale: f64) -> Self {
+        let inverse = 1.0 / (self.constant * scale);
+        Factor { linear: self.linear * inverse, constant: inverse / scale }
     }
 }
 
