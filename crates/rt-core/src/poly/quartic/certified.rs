@@ -80,7 +80,7 @@ fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
 
 /// The roots of a quadratic whose outer coefficients are not zero; `None` in doubt.
 #[inline(always)]
-pub(in super::super) fn quadratic<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
+fn quadratic<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
     let e = c.map(exponent);
     let near = |e: i32| (-400..=400).contains(&e);
     // x = y 2^k with k half the difference of the outer exponents, and the leading coefficient brought to about 1.

@@ -10,7 +10,7 @@ mod split;
 use super::{Roots, cubic};
 use crate::Interval;
 
-pub(super) use certified::{all_roots, quadratic};
+pub(super) use certified::all_roots;
 pub use certified::{double, quartic};
 pub use ferrari::ferrari;
 pub use graphics_gems::graphics_gems;

@@ -1,0 +1,233 @@
+//! Polynomials: planted roots, nearly repeated roots, exact discriminants, scaling, mirroring and negating bit for bit, and the
+//! same bits without fused products.
+// Made-up input only, and conditions in the words of the theorem.
+#![allow(clippy::disallowed_methods, clippy::if_same_then_else, clippy::manual_is_multiple_of)]
+
+use proptest::prelude::*;
+use rt_core::Interval;
+use rt_core::kernel::{Level, level, set_level};
+use rt_core::poly::{Method, Roots, cubic, quadratic, quartic, roots};
+
+/// The roots as bits, so that nothing but the same number is equal (zero has one sign).
+fn bits<const N: usize>(roots: &Roots<N>) -> Vec<(u64, u32)> {
+    roots.iter().map(|root| (root.x.to_bits(), root.multiplicity)).collect()
+}
+
+fn solve(c: [f64; 5]) -> Roots<4> {
+    quartic(c, Interval::LINE)
+}
+
+/// The product of `x - a` over small whole numbers: exact in `f64`.
+fn planted(at: &[i32]) -> [f64; 5] {
+    let mut c = [1.0, 0.0, 0.0, 0.0, 0.0];
+    for (degree, &a) in at.iter().enumerate() {
+        for k in (0..=degree + 1).rev() {
+            let above = if k > 0 { c[k - 1] } else { 0.0 };
+            let here = if k <= degree { c[k] } else { 0.0 };
+            c[k] = above - f64::from(a) * here;
+        }
+    }
+    c
+}
+
+/// Sorted, each once with its multiplicity.
+fn gathered(at: &[i32]) -> Vec<(f64, u32)> {
+    let mut at = at.to_vec();
+    at.sort_unstable();
+    at.chunk_by(|a, b| a == b).map(|same| (f64::from(same[0]), same.len() as u32)).collect()
+}
+
+fn found<const N: usize>(roots: &Roots<N>) -> Vec<(f64, u32)> {
+    roots.iter().map(|root| (root.x, root.multiplicity)).collect()
+}
+
+/// A coefficient: a simple number, any number of moderate size, or zero.
+fn coefficient() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -2.0..2.0f64,
+        2 => (-16i32..=16).prop_map(|n| f64::from(n) / 4.0),
+        1 => ((-1.0..1.0f64), -60i32..60).prop_map(|(m, e)| m * 2f64.powi(e)),
+    ]
+}
+
+/// Coefficients with two to four nearly equal roots, rounded.
+fn cluster() -> impl Strategy<Value = [f64; 5]> {
+    (-4.0..4.0f64, -4.0..4.0f64, -4.0..4.0f64, prop::collection::vec(-32i64..=32, 4), 2usize..=4).prop_map(
+        |(center, a, b, ulps, count)| {
+            let near = |n: i64| f64::from_bits((center.to_bits() as i64 + n) as u64);
+            let at = [near(ulps[0]), near(ulps[1]), if count > 2 { near(ulps[2]) } else { a }];
+            let at = [at[0], at[1], at[2], if count > 3 { near(ulps[3]) } else { b }];
+            let mut c = [1.0, 0.0, 0.0, 0.0, 0.0];
+            for (degree, a) in at.iter().enumerate() {
+                for k in (0..=degree + 1).rev() {
+                    let above = if k > 0 { c[k - 1] } else { 0.0 };
+                    c[k] = above - a * if k <= degree { c[k] } else { 0.0 };
+                }
+            }
+            c
+        },
+    )
+}
+
+fn any_quartic() -> impl Strategy<Value = [f64; 5]> {
+    prop_oneof![prop::array::uniform5(coefficient()), cluster()]
+}
+
+/// The sign of `b^2 - 4 a c` in whole numbers.
+fn discriminant2(a: i64, b: i64, c: i64) -> i128 {
+    i128::from(b) * i128::from(b) - 4 * i128::from(a) * i128::from(c)
+}
+
+/// The discriminant of `a x^3 + b x^2 + c x + d`.
+fn discriminant3(a: i64, b: i64, c: i64, d: i64) -> i128 {
+    let [a, b, c, d] = [a, b, c, d].map(i128::from);
+    18 * a * b * c * d - 4 * b * b * b * d + b * b * c * c - 4 * a * c * c * c - 27 * a * a * d * d
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn planted_roots_are_found_with_their_multiplicity(at in prop::collection::vec(-40i32..=40, 4)) {
+        prop_assert_eq!(found(&solve(planted(&at))), gathered(&at));
+        let c = planted(&at[..3]);
+        prop_assert_eq!(found(&cubic([c[0], c[1], c[2], c[3]], Interval::LINE)), gathered(&at[..3]));
+        let c = planted(&at[..2]);
+        prop_assert_eq!(found(&quadratic([c[0], c[1], c[2]], Interval::LINE)), gathered(&at[..2]));
+    }
+
+    #[test]
+    fn the_number_of_roots_follows_the_exact_discriminant(
+        c in prop::array::uniform4(-1_000_000i64..1_000_000), lead in 1i64..1000, near in -2i64..=2,
+    ) {
+        // 4 a c within a few units of b^2: as near to a double root as whole numbers get.
+        let (a, b) = (lead, 2 * lead * c[1]);
+        let c0 = lead * c[1] * c[1] + near;
+        let count = match discriminant2(a, b, c0) { d if d > 0 => vec![1, 1], 0 => vec![2], _ => vec![] };
+        let roots = quadratic([c0 as f64, b as f64, a as f64], Interval::LINE);
+        prop_assert_eq!(roots.iter().map(|root| root.multiplicity).collect::<Vec<_>>(), count);
+
+        // (x - p)^2 (x - q) + a little.
+        let (p, q) = (c[2] % 10_000, c[3] % 10_000);
+        let k = [-p * p * q + near, p * p + 2 * p * q, -2 * p - q, 1];
+        let d = discriminant3(k[3], k[2], k[1], k[0]);
+        let roots = cubic(k.map(|c| c as f64), Interval::LINE);
+        let expected = if d > 0 { 3 } else if d < 0 { 1 } else if p == q { 1 } else { 2 };
+        prop_assert_eq!(roots.len(), expected, "{:?}", k);
+    }
+
+    #[test]
+    fn an_even_number_of_roots_in_order(c in any_quartic()) {
+        let roots = solve(c);
+        prop_assert!(roots.iter().all(|root| root.x.is_finite()));
+        prop_assert!(roots.windows(2).all(|pair| pair[0].x <= pair[1].x));
+        let count: u32 = roots.iter().map(|root| root.multiplicity).sum();
+        prop_assert!(c[4] == 0.0 || count % 2 == 0 && count <= 4, "{:?}", roots);
+    }
+
+    #[test]
+    fn scaling_by_powers_of_two_is_exact(c in any_quartic(), value in -300i32..300, place in -40i32..40) {
+        let scaled = std::array::from_fn(|k| c[k] * 2f64.powi(value - place * k as i32));
+        let back: Vec<_> =
+            solve(scaled).iter().map(|root| ((root.x * 2f64.powi(-place)).to_bits(), root.multiplicity)).collect();
+        prop_assert_eq!(bits(&solve(c)), back);
+    }
+
+    #[test]
+    fn mirroring_mirrors_and_negating_changes_nothing(c in any_quartic()) {
+        let roots = solve(c);
+        let mirrored = solve([c[0], -c[1], c[2], -c[3], c[4]]);
+        let back: Vec<_> =
+            mirrored.iter().rev().map(|root| ((0.0 - root.x).to_bits(), root.multiplicity)).collect();
+        prop_assert_eq!(bits(&roots), back);
+        prop_assert_eq!(bits(&roots), bits(&solve(c.map(|c| -c))));
+    }
+
+    #[test]
+    fn reversing_inverts(c in any_quartic()) {
+        prop_assume!(c[0] != 0.0 && c[4] != 0.0);
+        let roots = solve(c);
+        let mut inverse: Vec<_> =
+            solve([c[4], c[3], c[2], c[1], c[0]]).iter().map(|root| (1.0 / root.x, root.multiplicity)).collect();
+        inverse.sort_by(|a, b| a.0.total_cmp(&b.0));
+        prop_assert_eq!(roots.len(), inverse.len());
+        for (root, (x, multiplicity)) in roots.iter().zip(inverse) {
+            // Both are rounded, and so is the reciprocal: three units of 2^-52 at most.
+            prop_assert!((root.x - x).abs() <= 3.0 * f64::EPSILON * x.abs(), "{} {}", root.x, x);
+            prop_assert_eq!(root.multiplicity, multiplicity);
+        }
+    }
+
+    #[test]
+    fn the_interval_selects(c in any_quartic(), min in -2.0..2.0f64, length in 0.0..3.0f64) {
+        let within = Interval::new(min, min + length);
+        let kept: Vec<_> = found(&solve(c)).into_iter().filter(|root| within.contains(root.0)).collect();
+        prop_assert_eq!(found(&quartic(c, within)), kept);
+    }
+}
+
+#[test]
+fn the_same_bits_without_fused_products() {
+    let best = level();
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    for case in 0..20_000 {
+        let mut c: [f64; 5] = std::array::from_fn(|_| next());
+        if case % 3 == 0 {
+            // Two nearly equal roots.
+            let (a, d) = (next(), next() * 1e-9);
+            let pair = [a * (a + d), -2.0 * a - d, 1.0];
+            let other = [next(), next(), 1.0];
+            c = [0.0; 5];
+            (0..9).for_each(|i| c[i / 3 + i % 3] += pair[i / 3] * other[i % 3]);
+        }
+        set_level(Level::Portable);
+        let portable = bits(&solve(c));
+        set_level(best);
+        assert_eq!(portable, bits(&solve(c)), "{c:?}");
+    }
+}
+
+#[test]
+fn special_coefficients() {
+    for method in [Method::Certified, Method::Ferrari, Method::GraphicsGems] {
+        let solve = |c| roots(c, Interval::LINE, method);
+        assert!(solve([0.0; 5]).all() && solve([0.0; 5]).is_empty());
+        assert!(!solve([1.0, 0.0, 0.0, 0.0, 0.0]).all());
+        assert!(solve([1.0, 0.0, 0.0, 0.0, 0.0]).is_empty());
+        assert_eq!(found(&solve([-3.0, 2.0, 0.0, 0.0, 0.0])), [(1.5, 1)]);
+        assert_eq!(found(&solve([-4.0, 0.0, 1.0, 0.0, 0.0])), [(-2.0, 1), (2.0, 1)]);
+        assert_eq!(found(&solve([0.0, 0.0, -2.0, 1.0, 0.0])), [(0.0, 2), (2.0, 1)]);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in 0..5 {
+                let mut c = [1.0; 5];
+                c[place] = bad;
+                assert!(solve(c).is_empty() && !solve(c).all(), "{c:?}");
+            }
+        }
+    }
+    assert_eq!(found(&solve([0.0, 0.0, 0.0, 0.0, 3.0])), [(0.0, 4)]);
+}
+
+#[test]
+fn multiple_roots_are_decided_exactly() {
+    // (7 x - 3)^2 (x^2 - 2), and the same one unit in the last place away.
+    let c = [-18.0, 84.0, -89.0, -42.0, 49.0];
+    let third = 3.0 / 7.0;
+    let root2 = 2f64.sqrt();
+    assert_eq!(found(&solve(c)), [(-root2, 1), (third, 2), (root2, 1)]);
+    let above = solve([c[0].next_up(), c[1], c[2], c[3], c[4]]);
+    let below = solve([c[0].next_down(), c[1], c[2], c[3], c[4]]);
+    assert_eq!((above.len(), below.len()), (4, 2));
+    // Squares of quadratics: with irrational roots, and with none.
+    assert_eq!(found(&solve([4.0, 0.0, -4.0, 0.0, 1.0])), [(-root2, 2), (root2, 2)]);
+    assert!(solve([5.0625, 0.0, 4.5, 0.0, 1.0]).is_empty());
+    // (2 x - 1)^3 (x + 5), (3 x + 2)^4
+    assert_eq!(found(&solve([-5.0, 29.0, -54.0, 28.0, 8.0])), [(-5.0, 1), (0.5, 3)]);
+    assert_eq!(found(&solve([16.0, 96.0, 216.0, 216.0, 81.0])), [(-2.0 / 3.0, 4)]);
+}
