@@ -47,7 +47,7 @@ impl Request for NearestRequest {
     fn answer(geometry: &Geometry, ray: &Ray, query: &Nearest) -> Option<Found> {
         match query.ruling() {
             Ruling::Clear(found) => found,
-            Ruling::Contested(within) => geometry.decide(ray, within, None),
+            Ruling::Contested(limit) => geometry.decide(ray, query.within(), limit, None),
         }
     }
     #[inline(always)]

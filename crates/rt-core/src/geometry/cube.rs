@@ -165,7 +165,7 @@ impl Geometry {
         let _ = self.ask_these(cube.seen(ray.direction), ray, &mut nearest);
         match nearest.ruling() {
             Ruling::Clear(found) => found,
-            Ruling::Contested(within) => self.decide(ray, within, None),
+            Ruling::Contested(limit) => self.decide(ray, within, limit, None),
         }
     }
 

@@ -240,8 +240,8 @@ impl Geometry {
 
     /// The first of the hits within an interval in which several objects are hit, too close to be sure.
     #[cold]
-    fn decide(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
-        vectorize(Decide { geometry: self, ray, within, from })
+    fn decide(&self, ray: &Ray, within: Interval, limit: f64, from: Option<&Departure>) -> Option<Found> {
+        vectorize(Decide { geometry: self, ray, within, limit, from })
     }
 }
 
@@ -276,7 +276,7 @@ impl Vectorized for FindNearest<'_> {
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
         match nearest.ruling() {
             Ruling::Clear(found) => found,
-            Ruling::Contested(within) => geometry.decide(ray, within, from),
+            Ruling::Contested(limit) => geometry.decide(ray, within, limit, from),
         }
     }
 }
@@ -285,6 +285,7 @@ struct Decide<'a> {
     geometry: &'a Geometry,
     ray: &'a Ray,
     within: Interval,
+    limit: f64,
     from: Option<&'a Departure>,
 }
 
@@ -292,14 +293,15 @@ impl Vectorized for Decide<'_> {
     type Output = Option<Found>;
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
-        let Decide { geometry, ray, within, from } = self;
-        let mut contest = Contest::new(within, from.map(|from| from.object));
+        let Decide { geometry, ray, within, limit, from } = self;
+        let mut contest = Contest::new(within, limit, from.map(|from| from.object));
         if let Some((from, shape)) = geometry.departed(from)
             && let Some(hit) = shape.hit_leaving(ray, within, from)
+            && hit.t() < limit
         {
             contest.offer(ray, from.object, shape, hit);
         }
-        let local = geometry.frame.enter(ray, within).0;
+        let local = geometry.frame.enter(ray, within.until(limit)).0;
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut contest);
         contest.winner()
     }

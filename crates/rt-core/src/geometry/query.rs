@@ -32,14 +32,20 @@ pub(super) struct Nearest {
 pub(super) enum Ruling {
     /// Clear, or nothing found.
     Clear(Option<Found>),
-    /// Several objects were hit within this interval, too close for their order to be sure.
-    Contested(Interval),
+    /// Several objects were hit before this parameter, too close for their order to be sure.
+    Contested(f64),
 }
 
 impl Nearest {
     #[inline(always)]
     pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
         Nearest { within, limit: within.max, window, skip, best: None, runner_up: f64::INFINITY }
+    }
+
+    /// What every shape is asked about.
+    #[inline(always)]
+    pub fn within(&self) -> Interval {
+        self.within
     }
 
     /// Takes a hit into account.
@@ -62,7 +68,7 @@ impl Nearest {
     #[inline(always)]
     pub fn ruling(&self) -> Ruling {
         match self.best {
-            Some(_) if self.runner_up < self.limit => Ruling::Contested(self.within.until(self.limit)),
+            Some(_) if self.runner_up < self.limit => Ruling::Contested(self.limit),
             best => Ruling::Clear(best),
         }
     }
@@ -84,18 +90,20 @@ impl Query for Nearest {
     }
 }
 
-/// Which of the hits within a narrow interval comes first: by refined parameter, then those that leave a solid before
+/// Which of the hits before a limit comes first: by refined parameter, then those that leave a solid before
 /// those that enter one, then by index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contest {
+    /// What every shape is asked about: the winner's hit is then the one that [`Nearest`] saw, to the last bit.
     within: Interval,
+    limit: f64,
     skip: Option<u32>,
     best: Option<(Found, f64, bool)>,
 }
 
 impl Contest {
-    pub fn new(within: Interval, skip: Option<u32>) -> Self {
-        Contest { within, skip, best: None }
+    pub fn new(within: Interval, limit: f64, skip: Option<u32>) -> Self {
+        Contest { within, limit, skip, best: None }
     }
 
     pub fn offer<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P, hit: Hit) {
@@ -119,12 +127,13 @@ impl Contest {
 impl Query for Contest {
     #[inline(always)]
     fn limit(&self) -> f64 {
-        self.within.max
+        self.limit
     }
     #[inline(always)]
     fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
         if self.skip != Some(object)
             && let Some(hit) = shape.hit(ray, self.within)
+            && hit.t() < self.limit
         {
             self.offer(ray, object, shape, hit);
         }
