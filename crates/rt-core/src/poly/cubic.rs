@@ -5,6 +5,15 @@ use crate::Interval;
 use crate::kernel::{Product, Task, run};
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
+///
+/// Exact coefficients, special cases and promises as for [`quartic()`](super::quartic()): the exact number of roots, multiple roots
+/// decided exactly, simple ones within 0.51 units in the last place. By the quartic divided by `x`, and where that leaves a doubt by the
+/// careful solver between critical points.
+///
+/// ```
+/// let roots = rt_core::poly::cubic([-2.0, 2.0, -1.0, 1.0], rt_core::Interval::FORWARD);
+/// assert_eq!((roots.len(), roots[0].x), (1, 1.0));
+/// ```
 pub fn cubic(c: [f64; 4], within: Interval) -> Roots<3> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();

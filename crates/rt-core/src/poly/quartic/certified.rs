@@ -1,4 +1,11 @@
-//! The default method.
+//! The default method: as little precision as each polynomial needs, and a certificate at every stage.
+//!
+//! 1. In `f64`: two quadratic [factors](split), their roots corrected with a compensated residual, and inclusion
+//!    [discs](discs) that prove how many roots are real and how near each answer is. All but nearly multiple roots end here.
+//! 2. In double-double: both [factors] refined until the signs of their discriminants are certain; a discriminant that is
+//!    zero as far as can be told is put to the exact test for a double root.
+//! 3. What is left, clusters of three or four roots and roots of wildly different size, goes to the careful solver between
+//!    critical points, with exact expansions.
 
 use super::super::{Roots, bracket};
 use super::{discs, factors, split};
@@ -8,6 +15,31 @@ use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent};
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3 + c[4] x^4`.
+///
+/// The coefficients are exact numbers of any size; leading zeros lower the degree. With a NaN or infinite coefficient there are
+/// no roots; the zero polynomial lists none and says so with [`Roots::all`]; a root beyond the range of `f64` is left
+/// out, one below it is rounded to zero or a subnormal number. Roots are ascending and compared with the interval after
+/// rounding. A double root is listed once with multiplicity 2; two different roots that round to one number are
+/// listed twice.
+///
+/// Promised: the exact number of roots, multiple roots decided exactly; simple roots within 0.51 units in the last place,
+/// that is 1.02 u of their value, u = 2^-53. Measured against 512-bit isolation on 51,000 hard quartics (`tests/truth_quartics.rs`
+/// runs a part): no wrong count, largest error 1.0 u. Not decided exactly, only to about 2^-200 of the magnitude of the terms:
+/// on which side of a tangent a polynomial without a multiple root lies. Scaling by powers of two
+/// is exact as long as nothing leaves the range of normal numbers; the bits do not depend on the machine.
+///
+/// Sources: Ferrari's method; Smith 1970 (doi:10.1145/321574.321579) for the discs; Graillat, Langlois and Louvet 2005 for the compensated
+/// residual; Gauss's lemma and Shewchuk 1997 (doi:10.1007/PL00009321) for the exact test.
+///
+/// ```
+/// use rt_core::{Interval, poly};
+///
+/// // (x - 1)^2 (x^2 - 2), and the same with the double root pulled apart by the least amount.
+/// let roots = poly::quartic([-2.0, 4.0, -1.0, -2.0, 1.0], Interval::LINE);
+/// assert_eq!(roots.iter().map(|root| root.multiplicity).collect::<Vec<_>>(), [1, 2, 1]);
+/// let roots = poly::quartic([-2.0, 4.0, -1.0_f64.next_up(), -2.0, 1.0], Interval::LINE);
+/// assert_eq!(roots.len() % 2, 0);
+/// ```
 pub fn quartic(c: [f64; 5], within: Interval) -> Roots<4> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();
@@ -15,7 +47,12 @@ pub fn quartic(c: [f64; 5], within: Interval) -> Roots<4> {
     run(Quartic { c }).within(within)
 }
 
-/// The real roots of a quartic whose coefficients are given in double-double, in double-double.
+/// The real roots of a quartic whose coefficients (ascending powers) are given in double-double, in double-double.
+///
+/// For coefficients that are themselves computed, such as those of a ray and a torus. Every root is found between critical
+/// points and good to about 2^-60 of its size or, in a cluster, of the size of the cluster's place; a multiple root is what the given
+/// numbers cannot tell from one, about 2^-200 of the magnitude of the terms. With a NaN or infinite coefficient there are
+/// no roots. Slower than [`quartic`] by a factor of ten.
 pub fn double(c: [Double; 5]) -> Roots<4, Double> {
     if !c.iter().all(|c| c.high.is_finite() && c.low.is_finite()) {
         return Roots::default();
