@@ -106,7 +106,9 @@ mod tests {
             match refract(d, n, from, to) {
                 Refraction::Through { direction, reflectance } => {
                     prop_assert!((0.0..=1.0).contains(&reflectance));
-                    prop_assert!((direction.length() - 1.0).abs() <= 8.0 * U);
+                    // |out|^2 - 1 is 2 c2 (tangential . n) but for a few roundings, and tangential . n is the ratio of
+                    // the indices times what d . n (3 u) and |n|^2 - 1 (6 u after normalising) err.
+                    prop_assert!((direction.length() - 1.0).abs() <= (8.0 + 9.0 * from / to) * U);
                     prop_assert!(direction.dot(n) <= 0.0);
                     let residual = from * sine(d, n) - to * sine(direction, n);
                     prop_assert!(residual.abs() <= 8.0 * 2.0 * U * from.max(to), "{residual:e}");
