@@ -2,6 +2,8 @@
 //! over the channels clipped to 0 and 1, and the rays from the eye a pixel.
 //!
 //! `cargo run --release --example antialias -- 160 scenes/checker.toml scenes/family.toml`
+//!
+//! Ways to sample may be added, as `rt render --aa` names them. Left to itself it draws the checker floor at 96.
 
 use rt::rt_shade::text::{PictureLoader, load};
 use rt::rt_shade::{Antialias, Picture, Settings, render};
@@ -26,7 +28,7 @@ fn error(a: &Picture, b: &Picture) -> f64 {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
-    let size: u32 = arguments.next().ok_or("size and scenes, please")?.parse()?;
+    let size: u32 = arguments.next().map_or(Ok(96), |size| size.parse())?;
     let mut ways = vec![Antialias::None, Antialias::Grid(2), Antialias::Grid(4), Antialias::Grid(8)];
     let mut files = Vec::new();
     for argument in arguments {
@@ -37,6 +39,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     if ways.len() == 4 {
         ways.push(Antialias::ADAPTIVE);
+    }
+    if files.is_empty() {
+        files.push(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/checker.toml").to_owned());
     }
     for file in files {
         let folder = Path::new(&file).parent().unwrap_or(Path::new(".")).to_owned();
