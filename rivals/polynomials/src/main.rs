@@ -128,8 +128,54 @@ fn times(cases: &[&Case], solvers: &[Solver], seconds: f64) -> Vec<f64> {
     least
 }
 
+/// Quadratics and cubics of uniform random coefficients: kurbo and ours in turns.
+fn lower_degrees() {
+    let mut state = 88_172_645_463_325_252_u64;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let cases: Vec<Case> = (0..2000)
+        .map(|_| Case {
+            family: String::new(),
+            c: std::array::from_fn(|k| if k < 4 { next() } else { 0.0 }),
+            roots: vec![],
+            margin: 0.0,
+        })
+        .collect();
+    let cases: Vec<&Case> = cases.iter().collect();
+    let solvers: [Solver; 4] = [
+        ("kurbo quadratic", |c| of(kurbo::common::solve_quadratic(c[0], c[1], c[2]))),
+        ("ours quadratic", |c| {
+            let mut answer = Answer::default();
+            let roots = poly::quadratic([c[0], c[1], c[2]], Interval::LINE);
+            roots.iter().for_each(|root| answer.add(root.x, root.multiplicity));
+            answer
+        }),
+        ("kurbo cubic", |c| of(kurbo::common::solve_cubic(c[0], c[1], c[2], c[3]))),
+        ("ours cubic", |c| {
+            let mut answer = Answer::default();
+            let roots = poly::cubic([c[0], c[1], c[2], c[3]], Interval::LINE);
+            roots.iter().for_each(|root| answer.add(root.x, root.multiplicity));
+            answer
+        }),
+    ];
+    // The counts of ours are exact: how often kurbo's differ.
+    for pair in solvers.chunks(2) {
+        let differ = cases.iter().filter(|case| pair[0].1(&case.c).count != pair[1].1(&case.c).count).count();
+        println!("{} and {}: {differ} of {} counts differ", pair[0].0, pair[1].0, cases.len());
+    }
+    let ns = times(&cases, &solvers, 2.0);
+    for (k, (name, _)) in solvers.iter().enumerate() {
+        println!("{:<22}{:<15}{:>8.1}{:>8.2}", "uniform", name, ns[k], ns[k] / ns[k / 2 * 2]);
+    }
+}
+
 fn main() {
     let path = std::env::args().nth(1).unwrap_or_else(|| "../shared/cases/quartics.jsonl".into());
+    lower_degrees();
     let detail = std::env::args().any(|a| a == "families");
     let all = load(&path);
     let mut sets: Vec<(String, Vec<&Case>)> = vec![

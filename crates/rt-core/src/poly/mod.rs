@@ -100,6 +100,18 @@ impl<const N: usize> Roots<N> {
         self
     }
 
+    /// Only the roots inside the interval.
+    #[inline(always)]
+    pub(crate) fn inside(self, within: Interval) -> Self {
+        // The roots ascend: with the first and the last all are inside.
+        match (self.first(), self.last()) {
+            (Some(first), Some(last)) if !(within.contains(first.x) && within.contains(last.x)) => {
+                self.within(within)
+            }
+            _ => self,
+        }
+    }
+
     /// The roots inside the interval, in a list of another capacity.
     #[inline]
     pub(crate) fn within<const M: usize>(&self, within: Interval) -> Roots<M> {

@@ -44,7 +44,7 @@ pub fn quartic(c: [f64; 5], within: Interval) -> Roots<4> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();
     }
-    run(Quartic { c }).within(within)
+    run(Quartic { c }).inside(within)
 }
 
 /// The real roots of a quartic whose coefficients (ascending powers) are given in double-double, in double-double.
@@ -82,7 +82,7 @@ pub(in super::super) fn all_roots<P: Product>(c: &[f64; 5]) -> Roots<4> {
     }
 }
 
-/// Zero roots taken out, and lower degrees: a cubic is a quartic divided by `x`.
+/// Zero roots taken out, and lower degrees: what the cubic's own quick way leaves is a quartic divided by `x`.
 #[inline(never)]
 fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
     let zeros = c.iter().take_while(|&&c| c == 0.0).count();
@@ -109,8 +109,16 @@ fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
             roots.push(x, 1);
             Some(with_zeros(roots))
         }
-        2 => quadratic::<P>(&[d[0], d[1], d[2]]).map(with_zeros),
-        3 => quick::<P>(&[0.0, d[0], d[1], d[2], d[3]]).map(with_zeros),
+        2 => {
+            let c = [d[0], d[1], d[2]];
+            let roots = super::super::quadratic::quick::<P>(&c).map(|roots| roots.within(Interval::LINE));
+            roots.or_else(|| quadratic::<P>(&c)).map(with_zeros)
+        }
+        3 => {
+            let roots = super::super::cubic::quick::<P>(&[d[0], d[1], d[2], d[3]]);
+            let roots = roots.map(|roots| roots.within(Interval::LINE));
+            roots.or_else(|| quick::<P>(&[0.0, d[0], d[1], d[2], d[3]])).map(with_zeros)
+        }
         _ => None,
     }
 }

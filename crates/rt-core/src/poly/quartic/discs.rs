@@ -14,7 +14,7 @@ use crate::kernel::Product;
 use crate::math::{exp2i, sqrt};
 
 /// What is left of the error before the last rounding, relative: a thirty-second of a unit roundoff.
-const LEFT: f64 = exp2i(-58);
+pub(in super::super) const LEFT: f64 = exp2i(-58);
 
 /// The real roots of `c` from its approximate factors, correctly rounded or nearly so, and certainly all of them; or
 /// `None` in doubt.
@@ -34,7 +34,7 @@ pub(super) fn roots<P: Product>(c: &[f64; 5], factors: &[Factor; 2]) -> Option<R
 
 /// The roots of a factor with discriminant `d > 0`.
 #[inline(always)]
-fn real(f: &Factor, d: f64) -> [f64; 2] {
+pub(in super::super) fn real(f: &Factor, d: f64) -> [f64; 2] {
     let h = -0.5 * f.linear;
     let s = sqrt(d);
     let q = if h >= 0.0 { h + s } else { h - s };
@@ -45,11 +45,14 @@ fn real(f: &Factor, d: f64) -> [f64; 2] {
 /// `p(x)` by compensated Horner (Graillat, Langlois and Louvet 2005): within u |p| + 2^-100 of the sum of the magnitudes of
 /// the terms, which comes second.
 #[inline(always)]
-fn compensated<P: Product, const N: usize>(c: &[f64; 5], x: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let mut s = [c[4]; N];
+pub(in super::super) fn compensated<P: Product, const M: usize, const N: usize>(
+    c: &[f64; M],
+    x: &[f64; N],
+) -> ([f64; N], [f64; N]) {
+    let mut s = [c[M - 1]; N];
     let mut e = [0.0; N];
-    let mut size = [c[4].abs(); N];
-    for k in (0..4).rev() {
+    let mut size = [c[M - 1].abs(); N];
+    for k in (0..M - 1).rev() {
         for i in 0..N {
             let (p, pe) = P::two_product(s[i], x[i]);
             let t = p + c[k];
@@ -71,7 +74,7 @@ fn compensated<P: Product, const N: usize>(c: &[f64; 5], x: &[f64; N]) -> ([f64;
 fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
     // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-58 after four.
     for _ in 0..5 {
-        let (p, size) = compensated::<P, 4>(c, &x);
+        let (p, size) = compensated::<P, 5, 4>(c, &x);
         let [d01, d02, d03, d12, d13, d23] =
             [x[0] - x[1], x[0] - x[2], x[0] - x[3], x[1] - x[2], x[1] - x[3], x[2] - x[3]];
         let g = [d01 * d02 * d03, -d01 * d12 * d13, d02 * d12 * d23, -d03 * d13 * d23];
@@ -125,7 +128,7 @@ fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
 fn two<P: Product>(c: &[f64; 5], mut x: [f64; 2], z: &Pair) -> Option<Roots<4>> {
     let r = z.residual(c);
     for _ in 0..4 {
-        let (p, size) = compensated::<P, 2>(c, &x);
+        let (p, size) = compensated::<P, 5, 2>(c, &x);
         let gap = x[0] - x[1];
         // |z - x_i|^2
         let far = [z.distance2(x[0]), z.distance2(x[1])];

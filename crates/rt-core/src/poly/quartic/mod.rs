@@ -1,11 +1,11 @@
 //! Degree four: three methods with one signature.
 
 mod certified;
-mod discs;
+pub(super) mod discs;
 mod factors;
 mod ferrari;
 mod graphics_gems;
-mod split;
+pub(super) mod split;
 
 use super::{Roots, cubic};
 use crate::Interval;

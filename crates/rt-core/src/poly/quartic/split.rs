@@ -10,7 +10,7 @@ use crate::math::{exp2i, sqrt};
 
 /// The monic quadratic `x^2 + linear x + constant`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Factor {
+pub(in super::super) struct Factor {
     pub linear: f64,
     pub constant: f64,
 }
@@ -84,7 +84,7 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
 
 /// The real root of `y^3 + m y + n` farthest from the others.
 #[inline(always)]
-pub(super) fn isolated_root(m: f64, n: f64) -> f64 {
+pub(in super::super) fn isolated_root(m: f64, n: f64) -> f64 {
     // It has the sign of -n, and with y = +-scale t, scale = 2 sqrt(|m|/3): 4 t^3 -+ 3 t = x, x >= 0.
     let third = (m * (1.0 / 3.0)).abs();
     let half = sqrt(third);
