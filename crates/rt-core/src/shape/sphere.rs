@@ -127,6 +127,17 @@ impl Sphere {
         }
     }
 
+    /// The exit of a ray from the inside that `f64` cannot tell.
+    #[cold]
+    #[inline(never)]
+    fn exit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if !ray.is_valid() {
+            return None;
+        }
+        let (scaled, chord) = self.scaled(ray)?;
+        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+    }
+
     /// [`Primitive::hit`] where `f64` or the interval leave a doubt.
     #[cold]
     #[inline(never)]
@@ -352,11 +363,14 @@ impl Primitive for Sphere {
     }
 
     fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
-        if from.side == Side::Outside || !ray.is_valid() {
+        if from.side == Side::Outside {
             return None;
         }
-        let (scaled, chord) = self.scaled(ray)?;
-        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+        // Not the exact root: the surface record refines it, as it does that of any hit.
+        if let Rough::Span([_, leave]) = self.rough(ray) {
+            return admit_exit(within, leave.t, 0, 1);
+        }
+        self.exit_in_doubt(ray, within)
     }
 
     fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
