@@ -186,7 +186,7 @@ impl Candidate {
     pub fn decide(&self, within: Interval, exact: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
         let Candidate { t, margin, .. } = *self;
         if t - within.min > margin && within.max - t > margin {
-            within.admit(t, self.part, self.root)
+            Some(Hit::inside(t, self.part, self.root))
         } else if within.min - t > margin || t - within.max > margin || t == within.min || t == within.max {
             // An end with these very bits is where this crossing was reported before: it is not reported twice.
             None
