@@ -350,3 +350,22 @@ fn bounds_of_a_needle() {
     let bounds = needle.bounds().unwrap();
     assert!(bounds.max.y >= 1e40 * f64::EPSILON && bounds.min.z <= -1e40 * f64::EPSILON, "{bounds:?}");
 }
+
+/// A ray that starts exactly at the apex: there is no direction away from the axis, and what double-double leaves of one
+/// is noise.
+#[test]
+#[ignore = "known gap: the normal is not of unit length"]
+fn a_start_at_the_apex() {
+    let apex = DVec3::splat(115.44921875);
+    let base = DVec3::new(-0.1, 28.75 + 1e-13, 115.44921875);
+    for (i, k) in (0..200).zip(1..) {
+        let base = base * f64::from(k) * 0.01;
+        let cone = Cone::open(base, 115.44921875, apex, 0.0).unwrap();
+        let x = f64::from(i);
+        let ray = Ray::new(apex, [libm::sin(x), libm::cos(x) * 1e-3, libm::sin(2.0 * x) - 0.2]);
+        for hit in crossings(&cone, &ray, Interval::LINE) {
+            let surface = cone.surface(&ray, hit);
+            assert!((surface.normal.length() - 1.0).abs() < 1e-15, "{surface:?}");
+        }
+    }
+}

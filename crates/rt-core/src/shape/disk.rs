@@ -1,6 +1,6 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::flat::{self, LEAST_CERTAIN, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
@@ -88,13 +88,38 @@ impl Disk {
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.center, self.scaled_normal, ray);
-        if !ray.is_valid() || rough.ends(within) {
+    fn hit_carefully(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if !ray.is_valid() {
             return None;
+        }
+        let there = Relative::new(self.center, ray, self.radius);
+        let span = there.interval(within);
+        let disk = Disk { center: DVec3::ZERO, radius: self.radius * there.unit, ..*self };
+        match disk.plainly(&there.ray, span) {
+            Verdict::Hit(hit) => return there.hit(hit, within),
+            Verdict::Doubt(rough) if !rough.as_ref().is_some_and(|rough| rough.ends(span)) => {}
+            _ => return None,
         }
         let at = meeting::meet(self, ray)?;
         if run(InDisk { at: &at, radius: self.radius }) { within.admit(at.t, 0, 0) } else { None }
+    }
+
+    #[inline(always)]
+    fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
+        let rough = Rough::new(self.center, self.scaled_normal, ray);
+        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
+        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
+        let p = ray.direction * rough.t - rough.w;
+        let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
+        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
+        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
+        if rough.sound & (rho2 - r2 > doubt) {
+            Verdict::Miss
+        } else if rough.decides(within) & (r2 - rho2 > doubt) {
+            within.admit(rough.t, 0, 0).map_or(Verdict::Miss, Verdict::Hit)
+        } else {
+            Verdict::Doubt((r2 - rho2 > doubt).then_some(rough))
+        }
     }
 }
 
@@ -157,19 +182,10 @@ impl Piece for Disk {
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.center, self.scaled_normal, ray);
-        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
-        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
-        let p = ray.direction * rough.t - rough.w;
-        let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
-        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
-        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
-        if rough.sound & (rho2 - r2 > doubt) {
-            None
-        } else if rough.decides(within) & (r2 - rho2 > doubt) {
-            within.admit(rough.t, 0, 0)
-        } else {
-            self.hit_exactly(ray, within)
+        match self.plainly(ray, within) {
+            Verdict::Hit(hit) => Some(hit),
+            Verdict::Miss => None,
+            Verdict::Doubt(_) => self.hit_carefully(ray, within),
         }
     }
 
@@ -198,6 +214,7 @@ impl Primitive for Disk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::exp2i;
 
     #[test]
     fn the_rim_belongs_to_it() {
@@ -223,6 +240,22 @@ mod tests {
         let bounds = disk.bounds().unwrap();
         assert!((bounds.max - DVec3::new(12.0, 1.6, 1.2)).abs().max_element() < 1e-14);
         assert!(bounds.contains(DVec3::new(12.0, 0.0, 0.0)));
+    }
+
+    /// Where plain `f64` leaves its range the same digits come out as where it does not.
+    #[test]
+    fn out_of_range_no_bit_changes() {
+        let near = Disk::new([0.1, 0.2, 0.3], [0.3, -0.7, 0.9], 1.7).unwrap();
+        let ray = Ray::new([3.1, 2.2, 5.7], [-2.4, -1.3, -5.5]);
+        let t = near.hit(&ray, Interval::FORWARD).unwrap().t();
+        for power in [-480, -300, 300, 500] {
+            let far = Disk::new(near.center * exp2i(power), near.scaled_normal, 1.7 * exp2i(power)).unwrap();
+            for speed in [-481, -300, 300, 481] {
+                let there = Ray::new(ray.origin * exp2i(power), ray.direction * exp2i(speed));
+                let found = far.hit(&there, Interval::FORWARD).unwrap().t();
+                assert_eq!(times_power(found, speed - power), t, "2^{power}, 2^{speed}");
+            }
+        }
     }
 
     #[test]

@@ -5,8 +5,8 @@ use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent};
-use crate::scaled::largest;
-use crate::{Aabb, Error, Interval, Ray};
+use crate::scaled::{largest, times_power};
+use crate::{Aabb, Error, Hit, Interval, Ray};
 use glam::DVec3;
 
 /// The unit roundoff of `f64`, 2^-53.
@@ -64,6 +64,48 @@ impl Rough {
     #[inline(always)]
     pub(super) fn decides(&self, within: Interval) -> bool {
         self.sound & ((self.t - within.min).abs() > self.slack) & ((self.t - within.max).abs() > self.slack)
+    }
+}
+
+/// What plain `f64` says of a ray and a flat shape.
+pub(super) enum Verdict {
+    Miss,
+    Hit(Hit),
+    /// Not certain. Where the place is and only the end of the interval is in doubt, that may have been made from the
+    /// parameter that `f64` gives: then it does not contain it.
+    Doubt(Option<Rough>),
+}
+
+/// A ray seen from an anchor, in units of powers of two.
+pub(super) struct Relative {
+    /// The origin minus the anchor, rounded once, and the direction; the largest of its components, or the size that
+    /// was asked for, is in `[1, 2)`.
+    pub(super) ray: Ray,
+    /// A length here times this is one there.
+    pub(super) unit: f64,
+    /// A parameter there is `2^power` times the one here.
+    power: i32,
+}
+
+impl Relative {
+    /// For a shape of this size, or of none.
+    pub(super) fn new(anchor: DVec3, ray: &Ray, size: f64) -> Relative {
+        let w = ray.origin - anchor;
+        let reach = largest(w);
+        let length = power_of(DVec3::splat(if reach > size { reach } else { size }));
+        let (direction, speed) = prescaled(ray.direction);
+        let unit = exp2i(-length);
+        Relative { ray: Ray::new(w * unit, direction), unit, power: length - speed }
+    }
+
+    /// An interval of the given ray.
+    pub(super) fn interval(&self, within: Interval) -> Interval {
+        Interval::new(times_power(within.min, -self.power), times_power(within.max, -self.power))
+    }
+
+    /// A hit of the given ray.
+    pub(super) fn hit(&self, hit: Hit, within: Interval) -> Option<Hit> {
+        within.admit(times_power(hit.t(), self.power), hit.part(), hit.root())
     }
 }
 

@@ -6,7 +6,7 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, LEAST_CERTAIN, Rough, U};
+use super::flat::{self, LEAST_CERTAIN, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
@@ -124,10 +124,25 @@ impl Triangle {
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
     #[inline(never)]
-    fn hit_exactly(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(self.a, self.scaled_normal, ray);
-        if !ray.is_valid() || rough.ends(within) {
+    fn hit_carefully(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if !ray.is_valid() {
             return None;
+        }
+        let there = Relative::new(self.a, ray, self.reach);
+        let span = there.interval(within);
+        let triangle = Triangle {
+            a: DVec3::ZERO,
+            b: (self.b - self.a) * there.unit,
+            c: (self.c - self.a) * there.unit,
+            reach: self.reach * there.unit,
+            area_scale: self.normal_scale * square_of_power(self.reach * there.unit),
+            smooth: None,
+            ..*self
+        };
+        match triangle.plainly(&there.ray, span) {
+            Verdict::Hit(hit) => return there.hit(hit, within),
+            Verdict::Doubt(rough) if !rough.as_ref().is_some_and(|rough| rough.ends(span)) => {}
+            _ => return None,
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
         let (least, most) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
@@ -135,6 +150,40 @@ impl Triangle {
             return None;
         }
         within.admit(meeting::meet(self, ray)?.t, 0, 0)
+    }
+
+    #[inline(always)]
+    fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
+        let (e1, e2) = (self.b - self.a, self.c - self.a);
+        let (s, d) = (self.a - ray.origin, ray.direction);
+        let r = d.cross(s);
+        let denominator = self.scaled_normal.dot(d);
+        let of_b = -e2.dot(r);
+        let of_c = e1.dot(r);
+        let of_a = denominator * self.area_scale - of_b - of_c;
+        // With E, S, D the largest coordinates of edges, s and d: a component of r is at most 2 D S and errs by
+        // 6 u D S (differences, products, difference); its product with an edge errs by 42 u E D S (three terms:
+        // 18 u from r, 24 u from the edge, the product and two additions). The product of the areas is at most
+        // 6 E E D and errs by 5 u of that with the rounded normal. The third function adds both others and 2 u of
+        // its terms: (84 + 36) u E D S + (30 + 6) u E E D at most.
+        let base = largest(d) * (largest(s) + self.reach);
+        let doubt = (128.0 * U) * self.reach * base;
+        let least = lesser(of_a, lesser(of_b, of_c));
+        let most = greater(of_a, greater(of_b, of_c));
+        // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
+        let certain =
+            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
+        if certain & (least < -doubt) & (most > doubt) {
+            return Verdict::Miss;
+        }
+        if certain & ((least > doubt) | (most < -doubt)) {
+            let rough = Rough::new(self.a, self.scaled_normal, ray);
+            if rough.decides(within) {
+                return within.admit(rough.t, 0, 0).map_or(Verdict::Miss, Verdict::Hit);
+            }
+            return Verdict::Doubt(Some(rough));
+        }
+        Verdict::Doubt(None)
     }
 }
 
@@ -258,35 +307,11 @@ impl Triangle {
 impl Primitive for Triangle {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let (e1, e2) = (self.b - self.a, self.c - self.a);
-        let (s, d) = (self.a - ray.origin, ray.direction);
-        let r = d.cross(s);
-        let denominator = self.scaled_normal.dot(d);
-        let of_b = -e2.dot(r);
-        let of_c = e1.dot(r);
-        let of_a = denominator * self.area_scale - of_b - of_c;
-        // With E, S, D the largest coordinates of edges, s and d: a component of r is at most 2 D S and errs by
-        // 6 u D S (differences, products, difference); its product with an edge errs by 42 u E D S (three terms:
-        // 18 u from r, 24 u from the edge, the product and two additions). The product of the areas is at most
-        // 6 E E D and errs by 5 u of that with the rounded normal. The third function adds both others and 2 u of
-        // its terms: (84 + 36) u E D S + (30 + 6) u E E D at most.
-        let base = largest(d) * (largest(s) + self.reach);
-        let doubt = (128.0 * U) * self.reach * base;
-        let least = lesser(of_a, lesser(of_b, of_c));
-        let most = greater(of_a, greater(of_b, of_c));
-        // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
-        let certain =
-            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
-        if certain & (least < -doubt) & (most > doubt) {
-            return None;
+        match self.plainly(ray, within) {
+            Verdict::Hit(hit) => Some(hit),
+            Verdict::Miss => None,
+            Verdict::Doubt(_) => self.hit_carefully(ray, within),
         }
-        if certain & ((least > doubt) | (most < -doubt)) {
-            let rough = Rough::new(self.a, self.scaled_normal, ray);
-            if rough.decides(within) {
-                return within.admit(rough.t, 0, 0);
-            }
-        }
-        self.hit_exactly(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -310,6 +335,12 @@ impl Primitive for Triangle {
     }
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
+}
+
+/// The square of the power of two in `[x / 2, x]`.
+fn square_of_power(x: f64) -> f64 {
+    let power = exp2i(crate::math::exponent(x).clamp(-1022, 0));
+    power * power
 }
 
 /// Below this, products of coordinates may have lost digits to underflow.
@@ -360,6 +391,36 @@ mod tests {
         let triangle = Triangle::new(a, b, DVec3::new(0.6, 0.7, 0.8_f64.next_up())).unwrap();
         // The third corner lies a few roundings off the line: the normal is across it all the same.
         assert!(triangle.normal().dot((b - a).normalize()).abs() < 2e-16);
+    }
+
+    /// In `f64` this ray meets the plane at exactly 0, where the interval begins; truly it starts before the plane, and
+    /// only exact edge functions can tell that it meets the corner.
+    #[test]
+    fn a_start_beside_a_far_corner() {
+        let a = [-4160735616.0, 7650410496.001251, 0.0];
+        let triangle = Triangle::new(a, [0.0; 3], [0.0, 256.0468752644956, 2097152.0]).unwrap();
+        let d = [-0.5943017621161063, 0.5020127814839439, 0.6283220374715858];
+        let ray = Ray::new([-1e-323, 3.3306690738754696e-16, 5e-324], d);
+        let hit = triangle.hit(&ray, Interval::FORWARD).unwrap();
+        assert_eq!(Some(hit), triangle.hit(&ray, Interval::LINE));
+        assert!((hit.t() - 5.637e-16).abs() < 1e-18);
+    }
+
+    /// Where plain `f64` leaves its range the same digits come out as where it does not.
+    #[test]
+    fn out_of_range_no_bit_changes() {
+        let near = Triangle::new([0.1, 0.2, 0.3], [1.7, 0.4, -0.2], [0.3, 1.9, 0.5]).unwrap();
+        let ray = Ray::new([3.1, 2.2, 5.7], [-2.4, -1.3, -5.5]);
+        let t = near.hit(&ray, Interval::FORWARD).unwrap().t();
+        for power in [-480, -300, 300, 500] {
+            let scale = exp2i(power);
+            let far = Triangle::new(near.a * scale, near.b * scale, near.c * scale).unwrap();
+            for speed in [-480, -300, 300, 480] {
+                let there = Ray::new(ray.origin * scale, ray.direction * exp2i(speed));
+                let found = far.hit(&there, Interval::FORWARD).unwrap().t();
+                assert_eq!(times_power(found, speed - power), t, "2^{power}, 2^{speed}");
+            }
+        }
     }
 
     #[test]

@@ -289,8 +289,11 @@ impl Check<'_> {
         }
         // The point in plain arithmetic: two roundings of each coordinate of the product and the sum, and t's own.
         let (o, step) = (ray.origin.abs(), (ray.direction * t).abs());
-        // And as many of the least steps, where all is subnormal.
-        let own = 4.0 * U * (o.element_sum() + step.element_sum()) + f64::from_bits(16);
+        // And as many of the least steps, where all is subnormal, also those of t; and what is nothing beside the size
+        // of the shape even for double-double numbers.
+        let least = f64::from_bits(16) + f64::from_bits(1) * ray.direction.abs().element_sum();
+        let size = self.shape.bounds().map_or(0.0, |b| (b.max - b.min).max_element());
+        let own = 4.0 * U * (o.element_sum() + step.element_sum()) + least + U * U * size;
         // In units of the largest component, whose square may be out of range.
         let off = ray.at(t) - point;
         let unit = off.abs().max_element();
@@ -324,12 +327,15 @@ impl Check<'_> {
     fn way_back(&self, ray: &Ray, hit: Hit, surface: &Surface) -> Result<(), Failure> {
         let direction = ray.direction.normalize_or_zero();
         let back = ray.origin - surface.point;
-        // Closer than the error radius, or more grazing than the record can tell: nothing is promised.
-        if direction.dot(surface.normal).abs() < 1e-3 || back.length() < 1e6 * surface.error {
+        // Closer than the record can tell, or more grazing: nothing is promised. `local`, which the exit of a shape is
+        // found from, is known to a unit in the last place of the shape's size.
+        let size = self.shape.bounds().map(|b| (b.max - b.min).max_element());
+        let known = surface.error + 2.0 * U * size.unwrap_or(0.0);
+        if direction.dot(surface.normal).abs() < 1e-3 || back.length() < 1e6 * known {
             return Ok(());
         }
         // Nor of a shape that is not much larger than the error radius, where it is.
-        if self.shape.bounds().is_some_and(|b| (b.max - b.min).max_element() < 1e6 * surface.error) {
+        if size.is_some_and(|size| size < 1e6 * surface.error) {
             return Ok(());
         }
         let side = Side::of_arrival(ray.direction, surface.normal);

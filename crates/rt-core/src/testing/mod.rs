@@ -41,7 +41,9 @@ mod contract;
 mod hard_rays;
 pub mod oracle;
 mod random;
+mod truth;
 
 pub use contract::{Effort, Failure, check_primitive};
 pub use hard_rays::HardRays;
 pub use random::Random;
+pub use truth::check_crossings;

@@ -10,12 +10,12 @@ use glam::DVec3;
 
 /// From the plane through the anchor across `normal`, of any length: positive on its side.
 pub fn plane(local: DVec3, normal: DVec3) -> f64 {
-    run(Quadric { local, axis: normal, kind: Kind::Plane })
+    distance(local, normal, Kind::Plane)
 }
 
 /// From the sphere of `radius` about the anchor.
 pub fn sphere(local: DVec3, radius: f64) -> f64 {
-    run(Quadric { local, axis: DVec3::X, kind: Kind::Sphere { radius } })
+    distance(local, DVec3::X, Kind::Sphere { radius })
 }
 
 /// From the endless cylinder of `radius` about the line through the anchor along `axis`.
@@ -25,34 +25,41 @@ pub fn cylinder(local: DVec3, axis: DVec3, radius: f64) -> f64 {
 
 /// From the endless cone about `axis`, of `base` radius at the anchor and `top` radius at the end of the axis.
 pub fn cone(local: DVec3, axis: DVec3, base: f64, top: f64) -> f64 {
-    run(Quadric { local, axis, kind: Kind::Cone { base, top } })
+    distance(local, axis, Kind::Cone { base, top })
 }
 
 /// From the torus about the anchor around `axis`; with `minor >= major` from its nearer sheet.
 pub fn torus(local: DVec3, axis: DVec3, major: f64, minor: f64) -> f64 {
-    let outer = run(Quadric { local, axis, kind: Kind::Torus { major, minor } });
-    let inner = run(Quadric { local, axis, kind: Kind::Torus { major: -major, minor } });
+    let outer = distance(local, axis, Kind::Torus { major, minor });
+    let inner = distance(local, axis, Kind::Torus { major: -major, minor });
     if inner.abs() < outer.abs() { inner } else { outer }
 }
 
-enum Kind {
+fn distance(local: DVec3, axis: DVec3, kind: Kind) -> f64 {
+    run(Distance { local: DoubleVector::from(local), axis: DoubleVector::from(axis), kind })
+}
+
+/// A surface about the anchor and an axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
     Plane,
     Sphere { radius: f64 },
     Cone { base: f64, top: f64 },
     Torus { major: f64, minor: f64 },
 }
 
-struct Quadric {
-    local: DVec3,
-    axis: DVec3,
-    kind: Kind,
+/// The signed distance of a point from a surface.
+pub(super) struct Distance {
+    pub local: DoubleVector,
+    pub axis: DoubleVector,
+    pub kind: Kind,
 }
 
-impl Task for Quadric {
+impl Task for Distance {
     type Output = f64;
     #[inline(always)]
     fn run<P: Product>(self) -> f64 {
-        let (l, a) = (DoubleVector::from(self.local), DoubleVector::from(self.axis));
+        let (l, a) = (self.local, self.axis);
         let axis = a.dot::<P>(a).sqrt::<P>();
         let height = l.dot::<P>(a).div::<P>(axis);
         let across = l.dot::<P>(l) - height.square::<P>();

@@ -142,9 +142,13 @@ impl Torus {
         };
         // From the circle to the point: `out` along the radius, `z` along the axis. No digit is lost in what follows.
         let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
+        // Near the axis, where the sheets of a spindle meet in a point, `across` is a small difference and no longer
+        // certain to be across: in f64 less than a unit beyond this distance, nearer the length is mended.
+        let pinched = rho.high < exp2i(-20);
         let normal = if rho.high > 0.0 {
-            across.high() * (out.high / (rho.high * self.minor_scaled))
-                + self.axis * (z.high / self.minor_scaled)
+            let normal = across.high() * (out.high / (rho.high * self.minor_scaled))
+                + self.axis * (z.high / self.minor_scaled);
+            if pinched { normal.normalize() } else { normal }
         } else {
             // On the axis, where the sheets meet in a point.
             self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
