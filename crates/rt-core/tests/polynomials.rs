@@ -231,3 +231,34 @@ fn multiple_roots_are_decided_exactly() {
     assert_eq!(found(&solve([-5.0, 29.0, -54.0, 28.0, 8.0])), [(-5.0, 1), (0.5, 3)]);
     assert_eq!(found(&solve([16.0, 96.0, 216.0, 216.0, 81.0])), [(-2.0 / 3.0, 4)]);
 }
+
+#[test]
+fn roots_below_the_normal_numbers_keep_their_order_and_number() {
+    let power = |k: i32| 2f64.powi(k / 2) * 2f64.powi(k - k / 2);
+    // A root that underflows beside a double root zero: the one on its right, the other on its left.
+    assert_eq!(found(&solve([0.0, 0.0, -1e-200, 1e200, 0.0])), [(0.0, 2), (0.0, 1)]);
+    assert_eq!(found(&solve([0.0, 0.0, 1e-200, 1e200, 0.0])), [(0.0, 1), (0.0, 2)]);
+    // 2^1016 (5 x - 3 2^-1043)^2: a double root among the subnormal numbers, and its neighbours.
+    for (near, count) in [(-1.0, 2), (0.0, 1), (1.0, 0)] {
+        let c = [(9.0 + near) * power(-1070), -30.0 * power(-27), 25.0 * power(1016)];
+        let roots = quadratic(c, Interval::LINE);
+        assert_eq!(roots.len(), count, "{roots:?}");
+        if count == 1 {
+            assert_eq!(found(&roots), [(0.6 * power(-1043), 2)]);
+        }
+        // Another root far away, of the greatest size; the term is far below the difference.
+        let roots = cubic([c[0], c[1], c[2], power(-2) * near], Interval::LINE);
+        let far = near * -25.0 * power(1018);
+        let expected = if near == 0.0 { count } else { count + 1 };
+        assert_eq!(roots.len(), expected, "{roots:?}");
+        assert!(near == 0.0 || roots.iter().any(|root| root.x == far), "{roots:?}");
+    }
+    // A critical point that underflows to zero, from below.
+    let c = [1.2e-315, 0.0, 5.4e-312, 2.3e232, 7e-9];
+    let cube_root = -(1.2e-315f64 * 1e300 / 2.3e232).cbrt() * 1e-100;
+    let roots = solve(c);
+    assert!(roots.len() == 2 && (roots[1].x / cube_root - 1.0).abs() < 1e-6, "{roots:?}");
+    // The least root there can be but zero, and the least that is not rounded to it.
+    assert_eq!(found(&solve([-f64::from_bits(1), f64::MAX, 0.0, 0.0, 0.0])), [(0.0, 1)]);
+    assert_eq!(found(&quadratic([-f64::from_bits(3), 2.0, 0.0], Interval::LINE)), [(f64::from_bits(2), 1)]);
+}
