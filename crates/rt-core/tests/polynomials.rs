@@ -262,3 +262,13 @@ fn roots_below_the_normal_numbers_keep_their_order_and_number() {
     assert_eq!(found(&solve([-f64::from_bits(1), f64::MAX, 0.0, 0.0, 0.0])), [(0.0, 1)]);
     assert_eq!(found(&quadratic([-f64::from_bits(3), 2.0, 0.0], Interval::LINE)), [(f64::from_bits(2), 1)]);
 }
+
+#[test]
+fn roots_of_very_different_size_are_found_within_the_steps_allowed() {
+    // Far from the roots +-2.7e-152 Newton's method only halves the distance to them: 500 times from 1.
+    let c = [7.291118977622381e-304, 1.52990923101e-312, -1.0, -1.0000000000000004, -0.2500000000000002];
+    let small = 2.700207210127101e-152;
+    assert_eq!(found(&solve(c)), [(-2.0, 1), (-1.9999999999999982, 1), (-small, 1), (small, 1)]);
+    let mirrored = [c[0], -c[1], c[2], -c[3], c[4]];
+    assert_eq!(found(&solve(mirrored)), [(-small, 1), (small, 1), (1.9999999999999982, 1), (2.0, 1)]);
+}
