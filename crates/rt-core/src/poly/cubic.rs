@@ -6,6 +6,7 @@ use super::{Roots, Simple, quartic};
 use crate::Interval;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent, sqrt};
+use core::hint::select_unpredictable;
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
 ///
@@ -61,13 +62,15 @@ pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Simple<3>> {
     let t = a * (1.0 / 3.0);
     let t2 = t * t;
     let x = isolated_root(b - 3.0 * t2, d - t * (b - 2.0 * t2)) - t;
-    // Division by x - x1 from the end where it is stable; both are computed, as the choice is hard to predict.
+    // Division by x - x1 from the end where it is stable; both are computed, as the choice cannot be foreseen.
     let inverse = 1.0 / x;
     let constant = -d * inverse;
-    let low = Factor { linear: (constant - b) * inverse, constant };
     let linear = a + x;
-    let high = Factor { linear, constant: b + linear * x };
-    let rest = if (x * x * x).abs() > d.abs() { low } else { high };
+    let below = (x * x * x).abs() > d.abs();
+    let rest = Factor {
+        linear: select_unpredictable(below, (constant - b) * inverse, linear),
+        constant: select_unpredictable(below, constant, b + linear * x),
+    };
     let discriminant = 0.25 * rest.linear * rest.linear - rest.constant;
     if discriminant > 0.0 {
         let y = real(&rest, discriminant);

@@ -7,6 +7,7 @@
 //! about the result: it is judged and mended afterwards.
 
 use crate::math::{exp2i, sqrt};
+use core::hint::select_unpredictable;
 
 /// The monic quadratic `x^2 + linear x + constant`.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +108,7 @@ pub(in super::super) fn isolated_root(m: f64, n: f64) -> f64 {
     let f = (y2 + m) * y - 2.0 * h;
     let slope = 3.0 * y2 + m;
     y -= f * slope / (slope * slope - 3.0 * y * f);
-    if n > 0.0 { -y } else { y }
+    select_unpredictable(n > 0.0, -y, y)
 }
 
 /// `cos(acos(x) / 3)` for `0 <= x <= 1`.
