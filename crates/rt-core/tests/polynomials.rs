@@ -5,8 +5,9 @@
 
 use proptest::prelude::*;
 use rt_core::Interval;
+use rt_core::double::Double;
 use rt_core::kernel::{Level, level, set_level};
-use rt_core::poly::{Method, Roots, cubic, quadratic, quartic, roots};
+use rt_core::poly::{Method, Root, Roots, cubic, quadratic, quartic, roots};
 
 /// The roots as bits, so that nothing but the same number is equal (zero has one sign).
 fn bits<const N: usize>(roots: &Roots<N>) -> Vec<(u64, u32)> {
@@ -71,6 +72,23 @@ fn cluster() -> impl Strategy<Value = [f64; 5]> {
 
 fn any_quartic() -> impl Strategy<Value = [f64; 5]> {
     prop_oneof![prop::array::uniform5(coefficient()), cluster()]
+}
+
+/// Coefficients of a cubic (and of a quadratic without the last): any, or with two or three roots within 32 units in the
+/// last place of each other, rounded.
+fn any_lower() -> impl Strategy<Value = [f64; 4]> {
+    let near = (-4.0..4.0f64, -4.0..4.0f64, prop::array::uniform3(-32i64..=32), any::<bool>()).prop_map(
+        |(center, far, ulps, triple)| {
+            let [a, b, d] = ulps.map(|n| f64::from_bits((center.to_bits() as i64 + n) as u64));
+            let d = if triple { d } else { far };
+            [-(a * b * d), a * b + a * d + b * d, -(a + b + d), 1.0]
+        },
+    );
+    let pair = (-4.0..4.0f64, prop::array::uniform2(-32i64..=32)).prop_map(|(center, ulps)| {
+        let [a, b] = ulps.map(|n| f64::from_bits((center.to_bits() as i64 + n) as u64));
+        [a * b, -(a + b), 1.0, 0.5]
+    });
+    prop_oneof![prop::array::uniform4(coefficient()), near, pair]
 }
 
 /// The sign of `b^2 - 4 a c` in whole numbers.
@@ -156,6 +174,68 @@ proptest! {
             prop_assert!((root.x - x).abs() <= 3.0 * f64::EPSILON * x.abs(), "{} {}", root.x, x);
             prop_assert_eq!(root.multiplicity, multiplicity);
         }
+    }
+
+    #[test]
+    fn lower_degrees_scale_mirror_negate_and_invert(
+        c in any_lower(), value in -100i32..100, place in -20i32..20,
+    ) {
+        let cubic = |c: [f64; 4]| cubic(c, Interval::LINE);
+        let quadratic = |c: [f64; 4]| quadratic([c[0], c[1], c[2]], Interval::LINE);
+        let scaled: [f64; 4] = std::array::from_fn(|k| c[k] * 2f64.powi(value - place * k as i32));
+        let mirrored = [c[0], -c[1], c[2], -c[3]];
+        let negative = c.map(|c| -c);
+        let back = |roots: &[Root], by: f64| -> Vec<(u64, u32)> {
+            roots.iter().map(|root| ((root.x * by + 0.0).to_bits(), root.multiplicity)).collect()
+        };
+        let reversed = |mut list: Vec<(u64, u32)>| {
+            list.reverse();
+            list
+        };
+        prop_assert_eq!(back(&cubic(scaled), 2f64.powi(-place)), bits(&cubic(c)));
+        prop_assert_eq!(back(&quadratic(scaled), 2f64.powi(-place)), bits(&quadratic(c)));
+        prop_assert_eq!(reversed(back(&cubic(mirrored), -1.0)), bits(&cubic(c)));
+        prop_assert_eq!(reversed(back(&quadratic(mirrored), -1.0)), bits(&quadratic(c)));
+        prop_assert_eq!(bits(&cubic(negative)), bits(&cubic(c)));
+        prop_assert_eq!(bits(&quadratic(negative)), bits(&quadratic(c)));
+
+        // The reversed polynomial has the reciprocal roots; all are rounded.
+        let inverse = |roots: &[Root], there: &[Root]| {
+            let mut list: Vec<_> = there.iter().map(|root| (1.0 / root.x, root.multiplicity)).collect();
+            list.sort_by(|a, b| a.0.total_cmp(&b.0));
+            roots.len() == list.len()
+                && roots.iter().zip(list).all(|(root, (x, multiplicity))| {
+                    (root.x - x).abs() <= 3.0 * f64::EPSILON * x.abs() && root.multiplicity == multiplicity
+                })
+        };
+        if c[0] != 0.0 && c[3] != 0.0 {
+            let there = cubic([c[3], c[2], c[1], c[0]]);
+            prop_assert!(inverse(&cubic(c), &there), "{:?} {:?}", cubic(c), there);
+        }
+        if c[0] != 0.0 && c[2] != 0.0 {
+            let there = quadratic([c[2], c[1], c[0], 0.0]);
+            prop_assert!(inverse(&quadratic(c), &there), "{:?} {:?}", quadratic(c), there);
+        }
+    }
+
+    #[test]
+    fn the_same_roots_at_every_degree(c in any_lower()) {
+        // By the quick way, by the way of the quartic (a root zero more), and by the careful solver.
+        let ours = cubic(c, Interval::LINE);
+        prop_assert_eq!(bits(&solve([c[0], c[1], c[2], c[3], 0.0])), bits(&ours));
+        let careful = quartic::double([c[0], c[1], c[2], c[3], 0.0].map(Double::from));
+        prop_assert_eq!(careful.len(), ours.len());
+        for (a, b) in careful.iter().zip(ours.iter()) {
+            // One unit in the last place at most: both are within 0.51 of the same number.
+            prop_assert!((a.x.to_f64() - b.x).abs() <= f64::EPSILON * b.x.abs(), "{:?} {:?}", a, b);
+            prop_assert_eq!(a.multiplicity, b.multiplicity);
+        }
+        let ours = quadratic([c[0], c[1], c[2]], Interval::LINE);
+        prop_assert_eq!(bits(&cubic([c[0], c[1], c[2], 0.0], Interval::LINE)), bits(&ours));
+        let with_zero = solve([0.0, c[0], c[1], c[2], 0.0]);
+        let others: Vec<_> = bits(&with_zero).into_iter().filter(|root| f64::from_bits(root.0) != 0.0).collect();
+        let expected: Vec<_> = bits(&ours).into_iter().filter(|root| f64::from_bits(root.0) != 0.0).collect();
+        prop_assert_eq!(others, expected);
     }
 
     #[test]
