@@ -138,8 +138,8 @@ fn accuracy(cases: &[RayCase]) -> Vec<Row> {
                 let group = groups.entry((case.kind.clone(), set.into(), way)).or_default();
                 group.rays += 1;
                 match verdict {
-                    // A count is judged where the truth is robust to 64 units, an error to 4.
-                    None if case.margin > 64.0 * UNIT => group.wrong += 1,
+                    // Judged where the truth is robust to 4 units.
+                    None if case.margin > 4.0 * UNIT => group.wrong += 1,
                     Some(Some(error)) if case.margin > 4.0 * UNIT => group.errors.push(error),
                     _ => {}
                 }

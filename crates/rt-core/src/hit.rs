@@ -1,5 +1,8 @@
 //! Where a ray may hit, and the small record of a hit.
 
+use core::fmt;
+use core::num::NonZeroU64;
+
 /// The open interval of the parameter in which a hit counts: `min < t < max`.
 ///
 /// An interval is an argument of each query, never a part of the ray. It may be empty (`min >= max`) or hold NaN:
@@ -42,23 +45,29 @@ impl Interval {
         Interval { min, max: self.max }
     }
 
-    /// The only way to make a [`Hit`]: `None` unless `t` lies inside, so that neither NaN nor a parameter out of
-    /// range can escape.
+    /// The way to make a [`Hit`]: `None` unless `t` lies inside, so that neither NaN nor a parameter out of
+    /// range can escape. Parts and roots may be any numbers but the greatest of both together.
     #[inline]
     pub fn admit(&self, t: f64, part: u32, root: u32) -> Option<Hit> {
-        if self.contains(t) { Some(Hit { t, part, root }) } else { None }
+        if self.contains(t) { Some(Hit::inside(t, part, root)) } else { None }
     }
 }
 
-/// A crossing of a ray and a shape: 16 bytes, the cheap half of an intersection.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A crossing of a ray and a shape: 16 bytes, also as an `Option`, which functions return in two registers.
+#[derive(Clone, Copy, PartialEq)]
 pub struct Hit {
     t: f64,
-    part: u32,
-    root: u32,
+    /// `2^32 part + root + 1`.
+    place: NonZeroU64,
 }
 
 impl Hit {
+    /// A hit whose parameter is known to lie inside the interval.
+    #[inline(always)]
+    pub(crate) fn inside(t: f64, part: u32, root: u32) -> Hit {
+        Hit { t, place: NonZeroU64::MIN.saturating_add(u64::from(part) << 32 | u64::from(root)) }
+    }
+
     /// The parameter along the ray, in lengths of its direction, within a few units in the last place.
     #[inline]
     pub fn t(&self) -> f64 {
@@ -68,13 +77,48 @@ impl Hit {
     /// Which part of the shape was hit; each shape says what its parts are.
     #[inline]
     pub fn part(&self) -> u32 {
-        self.part
+        ((self.place.get() - 1) >> 32) as u32
     }
 
     /// The index of this crossing among those of its part with the whole line, counted from `t = -infinity`:
     /// two roots may round to one `t`, the index still tells them apart.
     #[inline]
     pub fn root(&self) -> u32 {
-        self.root
+        (self.place.get() - 1) as u32
+    }
+}
+
+impl fmt::Debug for Hit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Hit")
+            .field("t", &self.t)
+            .field("part", &self.part())
+            .field("root", &self.root())
+            .finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hit_says_what_it_was_made_from() {
+        for (part, root) in [(0, 0), (0, u32::MAX), (7, 3), (u32::MAX, u32::MAX - 1)] {
+            let hit = Interval::LINE.admit(0.5, part, root).unwrap();
+            assert_eq!((hit.t(), hit.part(), hit.root()), (0.5, part, root));
+        }
+        assert_eq!(size_of::<Option<Hit>>(), 16);
+        let printed = alloc::format!("{:?}", Interval::LINE.admit(0.5, 1, 2));
+        assert_eq!(printed, "Some(Hit { t: 0.5, part: 1, root: 2 })");
+    }
+
+    #[test]
+    fn nothing_outside_the_open_interval_is_admitted() {
+        let within = Interval::new(0.0, 1.0);
+        for t in [0.0, 1.0, -0.5, 1.5, f64::NAN, f64::INFINITY] {
+            assert_eq!(within.admit(t, 0, 0), None);
+        }
+        assert_eq!(Interval::new(f64::NAN, 1.0).admit(0.5, 0, 0), None);
     }
 }

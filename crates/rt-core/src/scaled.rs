@@ -212,6 +212,19 @@ pub(crate) enum Rough {
     Doubt,
 }
 
+/// Whether a line certainly passes outside a sphere about zero: in plain `f64`, without scaling.
+///
+/// `doubt` is 2^-50 of the radius, or NaN by [`range_guard`]. Errors as of `rough` in the module `sphere`: the
+/// square of the line's distance times `d.d` is known to `(8 u S r + 128 u^2 S^2) d.d`, with S = |w| + 2 r.
+#[inline(always)]
+pub(crate) fn passes_outside(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> bool {
+    let square = d.dot(d);
+    let moment = w.cross(d);
+    let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
+    let doubt = far * (doubt + far * exp2i(-99));
+    moment.dot(moment) > (radius * radius + doubt) * square && moderate(square)
+}
+
 /// Whether a sum of squares is far from under- and overflow: in `2^-400..2^400`. False for NaN.
 #[inline(always)]
 pub(crate) fn moderate(square: f64) -> bool {

@@ -14,6 +14,7 @@ mod camera;
 mod color;
 mod error;
 mod guard;
+mod highlight;
 mod light;
 mod material;
 mod medium;

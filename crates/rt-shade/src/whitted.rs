@@ -10,11 +10,13 @@
 //! Light is only added, never taken away: two shadows that overlap are as dark as one. The sum is taken in the order of
 //! the lamps.
 
+use crate::highlight::power;
 use crate::material::{Optics, Paint};
 use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
 use crate::{Color, Material, Scene, Settings, Stats};
 use rt_core::glam::DVec3;
+use rt_core::kernel::{Product, Task, run};
 use rt_core::{Departure, DirectionCube, Found, Interval, Ray, Side, Surface};
 
 /// Traces rays through a scene, one thread's worth.
@@ -40,6 +42,23 @@ struct Vertex<'s> {
     /// The side of arrival.
     side: Side,
     material: &'s Material,
+}
+
+/// The colour of a hit: a task, so that all that is inlined into it is compiled for the instruction set in use.
+struct Shade<'a, 's> {
+    tracer: &'a mut Tracer<'s>,
+    ray: &'a Ray,
+    found: Found,
+    depth: u32,
+    weight: f64,
+}
+
+impl Task for Shade<'_, '_> {
+    type Output = Color;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Color {
+        self.tracer.shade_here(self.ray, self.found, self.depth, self.weight)
+    }
 }
 
 impl<'s> Tracer<'s> {
@@ -94,6 +113,11 @@ impl<'s> Tracer<'s> {
 
     /// The colour of a hit.
     fn shade(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
+        run(Shade { tracer: self, ray, found, depth, weight })
+    }
+
+    #[inline(always)]
+    fn shade_here(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
         let scene = self.scene;
         let surface = scene.geometry.surface(ray, found);
         let direction = ray.direction.normalize();
@@ -118,6 +142,7 @@ impl<'s> Tracer<'s> {
     }
 
     /// Ambient light and the light of the lamps.
+    #[inline(always)]
     fn local(&mut self, v: &Vertex) -> Color {
         let scene = self.scene;
         let material = v.material;
@@ -159,7 +184,7 @@ impl<'s> Tracer<'s> {
             if material.specular > 0.0 {
                 let along = (v.normal * (2.0 * cosine) - to_light).dot(-v.direction);
                 if along > 0.0 {
-                    sum += arriving * (material.specular * libm::pow(along, material.shininess));
+                    sum += arriving * (material.specular * power(along, material.shininess));
                 }
             }
         }
@@ -167,6 +192,7 @@ impl<'s> Tracer<'s> {
     }
 
     /// What a straight ray to a lamp leaves of its light; `None` when something opaque is in the way.
+    #[inline(always)]
     fn visibility(&mut self, from: &Departure, lamp: DVec3, cube: Option<&DirectionCube>) -> Option<Color> {
         self.stats.shadow_rays += 1;
         let scene = self.scene;
@@ -200,6 +226,7 @@ impl<'s> Tracer<'s> {
     }
 
     /// What the mirror ray and the transmitted ray bring.
+    #[inline(always)]
     fn spawned(&mut self, v: &Vertex, depth: u32, weight: f64) -> Color {
         let material = v.material;
         let transmits = !material.transmit.is_black();
@@ -254,6 +281,7 @@ impl<'s> Tracer<'s> {
     }
 
     /// The colour that a spawned ray sees.
+    #[inline(always)]
     fn follow(&mut self, ray: &Ray, within: Interval, from: &Departure, depth: u32, weight: f64) -> Color {
         match self.scene.geometry.nearest_leaving(ray, within, from) {
             None => self.scene.background,

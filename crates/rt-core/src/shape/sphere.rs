@@ -10,7 +10,7 @@ use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
-    is_plain, largest, margin, moderate, range_guard, times_power, uncertainty,
+    is_plain, largest, moderate, range_guard, times_power, uncertainty,
 };
 use crate::surface::Coordinates;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
@@ -25,8 +25,8 @@ use glam::DVec3;
 pub struct Sphere {
     center: DVec3,
     radius: f64,
-    /// 2^-50 of the radius, or NaN where squares would leave the range of the exponents.
-    doubt: f64,
+    /// 2^-49 of the radius, or NaN where squares would leave the range of the exponents.
+    slack: f64,
 }
 
 impl Sphere {
@@ -38,7 +38,7 @@ impl Sphere {
     pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
         let center = checked_point("center", center.into())?;
         let radius = checked_length("radius", radius)?;
-        Ok(Sphere { center, radius, doubt: radius * exp2i(-50) + range_guard(radius) })
+        Ok(Sphere { center, radius, slack: radius * exp2i(-49) + range_guard(radius) })
     }
 
     /// The centre.
@@ -91,7 +91,7 @@ impl Sphere {
     /// Entrance and exit as `f64` finds them.
     #[inline(always)]
     fn rough(&self, ray: &Ray) -> Rough {
-        rough(self.radius, self.doubt, ray.origin - self.center, ray.direction)
+        rough(self.radius, self.slack, ray.origin - self.center, ray.direction)
     }
 
     /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
@@ -101,7 +101,7 @@ impl Sphere {
         let unit = exponent(self.radius);
         let Some(scaled) = ScaledRay::new(ray, self.center, unit) else { return Rough::Miss };
         let radius = self.radius * exp2i(-unit);
-        match rough(radius, radius * exp2i(-50), scaled.relative.high(), scaled.direction) {
+        match rough(radius, radius * exp2i(-49), scaled.relative.high(), scaled.direction) {
             Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
             other => other,
         }
@@ -127,7 +127,35 @@ impl Sphere {
         }
     }
 
-    /// [`Primitive::hit`] where `f64` or the interval leave a doubt.
+    /// The exit of a ray from the inside that `f64` cannot tell.
+    #[cold]
+    #[inline(never)]
+    fn exit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if !ray.is_valid() {
+            return None;
+        }
+        let (scaled, chord) = self.scaled(ray)?;
+        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+    }
+
+    /// [`Primitive::hit`] for lines that nearly touch, or come from afar, and where the interval ends beside a crossing.
+    #[inline(never)]
+    fn hit_closely(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let line = Approach::new(self.radius, self.slack, ray.origin - self.center, ray.direction);
+        if let Some(chord) = line.chord() {
+            if let Some(hit) = chord.first(within) {
+                return Some(hit);
+            }
+            if chord.is_beside(within) {
+                return None;
+            }
+        } else if line.misses() {
+            return None;
+        }
+        self.hit_in_doubt(ray, within)
+    }
+
+    /// The same where `f64` leaves a doubt.
     #[cold]
     #[inline(never)]
     fn hit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
@@ -136,37 +164,112 @@ impl Sphere {
     }
 }
 
+/// A line about its closest approach to the centre of a sphere, in `f64`.
+///
+/// With `t0 = -w.d / |d|^2` and `l = w + t0 d`, the crossings are at `t0 -+ sqrt(D / |d|^2)`, `D = r^2 - |l|^2`.
+///
+/// With u = 2^-53, `t0` errs by less than `9 u |w| / |d|`, which moves `l` along the line: that matters in its square only.
+/// Across the line `l` errs by the roundings of `w`, of the product and of the sum, each less than u |w| in a
+/// coordinate: by less than 5.2 u |w|. Hence `D`, where its sign could be in doubt at all (|l| about r or below the
+/// error), by less than `10.4 u r |w| + 4 u r^2 + 200 u^2 |w|^2`, less than `16 u S r + 512 u^2 S^2` for S = |w| + 2 r, with the
+/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^14 times that, the parameters err by less
+/// than 2^-15 of half the chord from the root, and by less still from `t0`: 2^-13 of half the chord is a margin.
+struct Approach {
+    /// `t0`.
+    middle: f64,
+    /// `D`.
+    depth: f64,
+    /// `1 / |d|^2`.
+    inverse: f64,
+    /// The bound on the error of `D`: NaN or infinite where a number may have left the range of the exponents.
+    doubt: f64,
+}
+
+impl Approach {
+    /// `slack`: 16 u r = 2^-49 r, or NaN, so that nothing is certain.
+    #[inline(always)]
+    fn new(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Approach {
+        let square = d.dot(d);
+        let line = Approach::of(square, w.dot(d), radius * radius, w, d);
+        let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
+        // Where `w.d` overflows, so does the square of `far`.
+        let doubt = if moderate(square) { far * (slack + far * exp2i(-97)) } else { f64::NAN };
+        Approach { doubt, ..line }
+    }
+
+    /// From `|d|^2`, `w.d` and `r^2`, without a bound of errors.
+    #[inline(always)]
+    fn of(square: f64, along: f64, near: f64, w: DVec3, d: DVec3) -> Approach {
+        let inverse = 1.0 / square;
+        let middle = -(along * inverse);
+        let l = w + d * middle;
+        Approach { middle, depth: near - l.dot(l), inverse, doubt: f64::NAN }
+    }
+
+    #[inline(always)]
+    fn misses(&self) -> bool {
+        self.depth < -self.doubt
+    }
+
+    /// Where the line is inside, if that is certain.
+    #[inline(always)]
+    fn chord(&self) -> Option<Span> {
+        (self.depth > CLEAR * self.doubt).then(|| self.span())
+    }
+
+    #[inline(always)]
+    fn span(&self) -> Span {
+        let half = sqrt(self.depth * self.inverse);
+        Span { enter: self.middle - half, leave: self.middle + half, margin: half * exp2i(-13) }
+    }
+}
+
+/// Where a line is inside a sphere: both ends are known within `margin`.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    enter: f64,
+    leave: f64,
+    margin: f64,
+}
+
+impl Span {
+    /// The first crossing in the interval, where that is certain.
+    #[inline(always)]
+    fn first(&self, within: Interval) -> Option<Hit> {
+        let Span { enter, leave, margin } = *self;
+        let inside = |t: f64| t - within.min > margin && within.max - t > margin;
+        if inside(enter) {
+            Some(Hit::inside(enter, 0, 0))
+        } else if within.min - enter > margin && inside(leave) {
+            Some(Hit::inside(leave, 0, 1))
+        } else {
+            None
+        }
+    }
+
+    /// Whether certainly no crossing is in the interval.
+    #[inline(always)]
+    fn is_beside(&self, within: Interval) -> bool {
+        let Span { enter, leave, margin } = *self;
+        let before = |t: f64| within.min - t > margin;
+        let after = |t: f64| t - within.max > margin;
+        before(leave) || after(enter) || (before(enter) && after(leave))
+    }
+
+    fn candidates(&self) -> [Candidate; 2] {
+        let Span { enter, leave, margin } = *self;
+        [(enter, 0), (leave, 1)].map(|(t, root)| Candidate { t, margin, part: 0, root })
+    }
+}
+
 /// A line and a sphere about zero in `f64`: certain, or in doubt.
-///
-/// The distance of the line from the centre is `|w x d| / |d|` (Lagrange's identity), so the crossings are at
-/// `(-w.d -+ sqrt(D)) / |d|^2` with `D = r^2 |d|^2 - |w x d|^2`.
-///
-/// With u = 2^-53, `w x d` errs by less than `2.9 u |w| |d| + u |w x d|`, the rounding of `w` included; hence `D`, where
-/// its sign could be in doubt at all (`|w x d|` about `r |d|` or below the error), by less than
-/// `(5.8 u r |w| + 11 u r^2 + 9 u^2 |w|^2) |d|^2`, less than `(8 u S r + 128 u^2 S^2) |d|^2` for S = |w| + 2 r, with the
-/// sum of the sizes of the coordinates for |w|. Where `D` is more than `CLEAR` = 2^14 times that, the parameters err
-/// by less than 2^-15 of half the chord from the root, and `w.d / |d|^2`, which errs by `9 u |w| / |d|`, by less still:
-/// 2^-13 of half the chord is a margin, and 2^-19 where it is 2^20 times that. `doubt` is 8 u r = 2^-50 r.
-#[inline(always)]
-fn rough(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> Rough {
-    let square = d.dot(d);
-    let moment = w.cross(d);
-    let depth = radius * radius * square - moment.dot(moment);
-    let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
-    let doubt = far * (doubt + far * exp2i(-99)) * square;
-    if depth < -doubt && moderate(square) {
-        return Rough::Miss;
+fn rough(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Rough {
+    let line = Approach::new(radius, slack, w, d);
+    match line.chord() {
+        Some(chord) => Rough::Span(chord.candidates()),
+        None if line.misses() => Rough::Miss,
+        None => Rough::Doubt,
     }
-    if !(depth > CLEAR * doubt && moderate(square)) {
-        return Rough::Doubt;
-    }
-    let inverse = 1.0 / square;
-    let (middle, half) = (-(w.dot(d) * inverse), sqrt(depth) * inverse);
-    let margin = half * margin(depth, doubt);
-    Rough::Span([
-        Candidate { t: middle - half, margin, part: 0, root: 0 },
-        Candidate { t: middle + half, margin, part: 0, root: 1 },
-    ])
 }
 
 /// A line and a sphere about zero in double-double: `start + (t - shift) * direction`.
@@ -257,8 +360,9 @@ impl Task for FindSurface<'_> {
     fn run<P: Product>(self) -> Surface {
         let FindSurface { sphere, ray, hit } = self;
         let relative = DoubleVector::difference(ray.origin, sphere.center);
-        // False for a NaN in `doubt`: a radius near the ends of the range.
-        if largest(relative.high()) * exp2i(-50) < exp2i(30) * sphere.doubt
+        // False for a NaN in `slack`: a radius near the ends of the range.
+        if sphere.slack > 0.0
+            && largest(relative.high()) < exp2i(30) * sphere.radius
             && is_plain(ray.direction)
             && let Some(found) = newton::<P>(&relative, ray.direction, sphere.radius, hit.t(), hit.root())
         {
@@ -303,29 +407,28 @@ impl Task for FindRescaled<'_> {
 impl Primitive for Sphere {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match self.rough(ray) {
-            Rough::Miss => None,
-            Rough::Doubt => self.hit_in_doubt(ray, within),
-            Rough::Span([enter, leave]) => {
-                let margin = enter.margin;
-                if enter.t - within.min > margin {
-                    if within.max - enter.t > margin {
-                        return within.admit(enter.t, 0, 0);
-                    }
-                    if enter.t - within.max > margin {
-                        return None;
-                    }
-                } else if within.min - enter.t > margin {
-                    if leave.t - within.min > margin && within.max - leave.t > margin {
-                        return within.admit(leave.t, 0, 1);
-                    }
-                    if within.min - leave.t > margin || leave.t - within.max > margin {
-                        return None;
-                    }
-                }
-                self.hit_in_doubt(ray, within)
+        // The sign of the quadratic equation's discriminant `D = (w.d)^2 - T'` tells most rays: with
+        // `T = |d|^2 (|w|^2 + r^2)` and u = 2^-53 it errs by less than 14 u T (3 u of `|d|^2`, 3 u of `|w|^2`, 2 u of each
+        // coordinate of `w`, 8 u of the square, three operations). The crossings are those of `Approach`: for `D` above
+        // 2^-31 T, half the chord squared times `|d|^2` is above 2^-31 (|w|^2 + r^2), more than 2^16 times its error there.
+        let (w, d) = (ray.origin - self.center, ray.direction);
+        let (square, along) = (d.dot(d), w.dot(d));
+        let (far, near) = (w.dot(w), self.radius * self.radius);
+        let discriminant = along * along - square * (far - near);
+        // NaN with `slack`: then both comparisons are false.
+        let safe = (exp2i(-31) + 0.0 * self.slack) * (square * (far + near));
+        // Where numbers underflow, T is not moderate; where they overflow, it is infinite or NaN.
+        if safe > exp2i(-900) {
+            if discriminant < -safe {
+                return None;
+            }
+            if discriminant > safe
+                && let Some(hit) = Approach::of(square, along, near, w, d).span().first(within)
+            {
+                return Some(hit);
             }
         }
+        self.hit_closely(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -352,11 +455,14 @@ impl Primitive for Sphere {
     }
 
     fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
-        if from.side == Side::Outside || !ray.is_valid() {
+        if from.side == Side::Outside {
             return None;
         }
-        let (scaled, chord) = self.scaled(ray)?;
-        admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
+        // Not the exact root: the surface record refines it, as it does that of any hit.
+        if let Rough::Span([_, leave]) = self.rough(ray) {
+            return admit_exit(within, leave.t, 0, 1);
+        }
+        self.exit_in_doubt(ray, within)
     }
 
     fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {

@@ -13,7 +13,9 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::poly::Roots;
-use crate::scaled::{ScaledRay, admit, checked_length, checked_point, largest, times_power};
+use crate::scaled::{
+    ScaledRay, admit, checked_length, checked_point, largest, passes_outside, range_guard, times_power,
+};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use filter::{Filter, RoughLine, Verdict};
 use frame::Frame;
@@ -43,12 +45,19 @@ pub struct Torus {
     frame: [DoubleVector; 3],
     /// The third of them, rounded.
     axis: DVec3,
+    /// At least `R + r` in the world's unit, and 2^-50 of it, or NaN where squares would leave the range of the exponents.
+    outer: f64,
+    doubt: f64,
     /// The power of two of the larger radius: what follows is in units of two to it.
     scale: i32,
     major_scaled: f64,
     minor_scaled: f64,
     /// `R + r`.
     reach: f64,
+    /// `(R - r)^2 + r^2`, or NaN for a spindle, whose inner sheet is where others have their hole.
+    hole: f64,
+    /// `(R + r)^2 + r^2`.
+    rim: f64,
     /// `R^2 + r^2`.
     squares: Double,
     /// `R^2 - r^2`.
@@ -86,6 +95,9 @@ impl Torus {
         let minor = checked_length("minor", minor)?;
         let scale = exponent(if major > minor { major } else { minor });
         let (major_scaled, minor_scaled) = (major * exp2i(-scale), minor * exp2i(-scale));
+        let (inner, reach) = (major_scaled - minor_scaled, major_scaled + minor_scaled);
+        let minor_squared = minor_scaled * minor_scaled;
+        let outer = (major + minor).next_up();
         let (squares, difference, twice) = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
         Ok(Torus {
             center,
@@ -93,10 +105,14 @@ impl Torus {
             minor,
             frame,
             axis: frame[2].high(),
+            outer,
+            doubt: outer * exp2i(-50) + range_guard(outer),
             scale,
             major_scaled,
             minor_scaled,
-            reach: major_scaled + minor_scaled,
+            reach,
+            hole: if inner > 0.0 { inner * inner + minor_squared } else { f64::NAN },
+            rim: reach * reach + minor_squared,
             squares,
             difference,
             twice,
@@ -242,6 +258,16 @@ impl Torus {
         None
     }
 
+    /// [`Primitive::hit`] for a line near the torus.
+    #[inline(never)]
+    fn hit_inside(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        let ray = self.scaled(ray)?;
+        match kernel::run(Filter { torus: self, ray: &ray, within, all: false }) {
+            Verdict::Certain(hits) => hits.iter().next(),
+            Verdict::Doubt => self.first_exact(&ray, within),
+        }
+    }
+
     #[cold]
     fn first_exact(&self, ray: &ScaledRay, within: Interval) -> Option<Hit> {
         let mut first = None;
@@ -255,12 +281,12 @@ impl Torus {
 }
 
 impl Primitive for Torus {
+    #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let ray = self.scaled(ray)?;
-        match kernel::run(Filter { torus: self, ray: &ray, within, all: false }) {
-            Verdict::Certain(hits) => hits.iter().next(),
-            Verdict::Doubt => self.first_exact(&ray, within),
+        if passes_outside(self.outer, self.doubt, ray.origin - self.center, ray.direction) {
+            return None;
         }
+        self.hit_inside(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
