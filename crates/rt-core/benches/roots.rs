@@ -1,9 +1,10 @@
 //! The solvers of quadratics, cubics and quartics, judged before they are timed.
 //!
 //! Quartics: the three methods on the hard quartics of `tests/data/quartics.jsonl`, whose roots are known to more digits
-//! than a `f64` has: all, those of rays and tori, and plain random ones. Quadratics and cubics: planted roots of few bits, so that the coefficients are exact and each root is
-//! a `f64`. The certified solvers must find every root with its multiplicity, and the nearest `f64` or its neighbour; what the older
-//! methods miss is printed beside their time. An element of the throughput is one polynomial.
+//! than a `f64` has: all, those of rays and tori, and plain random ones. Quadratics and cubics: planted roots of few
+//! bits, so that the coefficients are exact and each root is a `f64`. The certified solvers must find every root with its
+//! multiplicity, and the nearest `f64` or its neighbour; what the older methods miss is printed beside their time. An
+//! element of the throughput is one polynomial.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rt_core::Interval;
@@ -74,7 +75,8 @@ impl Planted {
     }
 }
 
-/// How many answers have a wrong number of roots, a wrong multiplicity or a root that is neither the nearest `f64` nor its neighbour.
+/// How many answers have a wrong number of roots, a wrong multiplicity or a root that is neither the nearest `f64` nor
+/// its neighbour.
 fn wrong<const N: usize>(cases: &[&Case<N>], solve: impl Fn([f64; N]) -> Vec<Root>) -> usize {
     let right = |case: &Case<N>| {
         let found = solve(case.c);
