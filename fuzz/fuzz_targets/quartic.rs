@@ -1,5 +1,5 @@
-//! Any coefficients: the roots ascend, have the signs of the polynomial about them, and are those of the reversed
-//! question.
+//! Any coefficients: the roots are finite and ascend, at most four with their multiplicities, and the mirrored polynomial
+//! has the mirrored roots, bit for bit.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

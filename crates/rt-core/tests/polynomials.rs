@@ -357,3 +357,12 @@ fn roots_of_very_different_size_are_found_within_the_steps_allowed() {
     let mirrored = [c[0], -c[1], c[2], -c[3], c[4]];
     assert_eq!(found(&solve(mirrored)), [(-small, 1), (small, 1), (1.9999999999999982, 1), (2.0, 1)]);
 }
+
+#[test]
+fn two_factors_with_one_constant_mirror_bit_for_bit() {
+    // Symmetric about -1/2; one root lies within 2^-58 of the middle of two numbers.
+    let c = [3.9723362078004277e-13, 0.0, -0.25, -0.5000000000000002, -0.2500000000000002];
+    let mirrored = solve([c[0], -c[1], c[2], -c[3], c[4]]);
+    let back: Vec<_> = mirrored.iter().rev().map(|root| (-root.x, root.multiplicity)).collect();
+    assert_eq!(found(&solve(c)), back);
+}

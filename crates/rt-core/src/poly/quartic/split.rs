@@ -60,10 +60,13 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
         return None;
     };
     let (mut v1, mut v2) = (0.5 * (sum - difference), 0.5 * (sum + difference));
-    if (sum < 0.0) == (difference < 0.0) {
-        v1 = r / v2;
-    } else if v1 != 0.0 {
-        v2 = r / v1;
+    // Equal ones stay equal, whichever way round the polynomial is given.
+    if difference != 0.0 {
+        if (sum < 0.0) == (difference < 0.0) {
+            v1 = r / v2;
+        } else if v1 != 0.0 {
+            v2 = r / v1;
+        }
     }
     let (mut f, mut g) = (
         Factor { linear: 2.0 * t + s, constant: t * (t + s) + v1 },
