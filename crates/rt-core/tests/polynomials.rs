@@ -5,8 +5,9 @@
 
 use proptest::prelude::*;
 use rt_core::Interval;
+use rt_core::double::Double;
 use rt_core::kernel::{Level, level, set_level};
-use rt_core::poly::{Method, Roots, cubic, quadratic, quartic, roots};
+use rt_core::poly::{Method, Root, Roots, cubic, quadratic, quartic, roots};
 
 /// The roots as bits, so that nothing but the same number is equal (zero has one sign).
 fn bits<const N: usize>(roots: &Roots<N>) -> Vec<(u64, u32)> {
@@ -71,6 +72,23 @@ fn cluster() -> impl Strategy<Value = [f64; 5]> {
 
 fn any_quartic() -> impl Strategy<Value = [f64; 5]> {
     prop_oneof![prop::array::uniform5(coefficient()), cluster()]
+}
+
+/// Coefficients of a cubic (and of a quadratic without the last): any, or with two or three roots within 32 units in the
+/// last place of each other, rounded.
+fn any_lower() -> impl Strategy<Value = [f64; 4]> {
+    let near = (-4.0..4.0f64, -4.0..4.0f64, prop::array::uniform3(-32i64..=32), any::<bool>()).prop_map(
+        |(center, far, ulps, triple)| {
+            let [a, b, d] = ulps.map(|n| f64::from_bits((center.to_bits() as i64 + n) as u64));
+            let d = if triple { d } else { far };
+            [-(a * b * d), a * b + a * d + b * d, -(a + b + d), 1.0]
+        },
+    );
+    let pair = (-4.0..4.0f64, prop::array::uniform2(-32i64..=32)).prop_map(|(center, ulps)| {
+        let [a, b] = ulps.map(|n| f64::from_bits((center.to_bits() as i64 + n) as u64));
+        [a * b, -(a + b), 1.0, 0.5]
+    });
+    prop_oneof![prop::array::uniform4(coefficient()), near, pair]
 }
 
 /// The sign of `b^2 - 4 a c` in whole numbers.
@@ -159,6 +177,68 @@ proptest! {
     }
 
     #[test]
+    fn lower_degrees_scale_mirror_negate_and_invert(
+        c in any_lower(), value in -100i32..100, place in -20i32..20,
+    ) {
+        let cubic = |c: [f64; 4]| cubic(c, Interval::LINE);
+        let quadratic = |c: [f64; 4]| quadratic([c[0], c[1], c[2]], Interval::LINE);
+        let scaled: [f64; 4] = std::array::from_fn(|k| c[k] * 2f64.powi(value - place * k as i32));
+        let mirrored = [c[0], -c[1], c[2], -c[3]];
+        let negative = c.map(|c| -c);
+        let back = |roots: &[Root], by: f64| -> Vec<(u64, u32)> {
+            roots.iter().map(|root| ((root.x * by + 0.0).to_bits(), root.multiplicity)).collect()
+        };
+        let reversed = |mut list: Vec<(u64, u32)>| {
+            list.reverse();
+            list
+        };
+        prop_assert_eq!(back(&cubic(scaled), 2f64.powi(-place)), bits(&cubic(c)));
+        prop_assert_eq!(back(&quadratic(scaled), 2f64.powi(-place)), bits(&quadratic(c)));
+        prop_assert_eq!(reversed(back(&cubic(mirrored), -1.0)), bits(&cubic(c)));
+        prop_assert_eq!(reversed(back(&quadratic(mirrored), -1.0)), bits(&quadratic(c)));
+        prop_assert_eq!(bits(&cubic(negative)), bits(&cubic(c)));
+        prop_assert_eq!(bits(&quadratic(negative)), bits(&quadratic(c)));
+
+        // The reversed polynomial has the reciprocal roots; all are rounded.
+        let inverse = |roots: &[Root], there: &[Root]| {
+            let mut list: Vec<_> = there.iter().map(|root| (1.0 / root.x, root.multiplicity)).collect();
+            list.sort_by(|a, b| a.0.total_cmp(&b.0));
+            roots.len() == list.len()
+                && roots.iter().zip(list).all(|(root, (x, multiplicity))| {
+                    (root.x - x).abs() <= 3.0 * f64::EPSILON * x.abs() && root.multiplicity == multiplicity
+                })
+        };
+        if c[0] != 0.0 && c[3] != 0.0 {
+            let there = cubic([c[3], c[2], c[1], c[0]]);
+            prop_assert!(inverse(&cubic(c), &there), "{:?} {:?}", cubic(c), there);
+        }
+        if c[0] != 0.0 && c[2] != 0.0 {
+            let there = quadratic([c[2], c[1], c[0], 0.0]);
+            prop_assert!(inverse(&quadratic(c), &there), "{:?} {:?}", quadratic(c), there);
+        }
+    }
+
+    #[test]
+    fn the_same_roots_at_every_degree(c in any_lower()) {
+        // By the quick way, by the way of the quartic (a root zero more), and by the careful solver.
+        let ours = cubic(c, Interval::LINE);
+        prop_assert_eq!(bits(&solve([c[0], c[1], c[2], c[3], 0.0])), bits(&ours));
+        let careful = quartic::double([c[0], c[1], c[2], c[3], 0.0].map(Double::from));
+        prop_assert_eq!(careful.len(), ours.len());
+        for (a, b) in careful.iter().zip(ours.iter()) {
+            // One unit in the last place at most: both are within 0.51 of the same number.
+            prop_assert!((a.x.to_f64() - b.x).abs() <= f64::EPSILON * b.x.abs(), "{:?} {:?}", a, b);
+            prop_assert_eq!(a.multiplicity, b.multiplicity);
+        }
+        let ours = quadratic([c[0], c[1], c[2]], Interval::LINE);
+        prop_assert_eq!(bits(&cubic([c[0], c[1], c[2], 0.0], Interval::LINE)), bits(&ours));
+        let with_zero = solve([0.0, c[0], c[1], c[2], 0.0]);
+        let others: Vec<_> = bits(&with_zero).into_iter().filter(|root| f64::from_bits(root.0) != 0.0).collect();
+        let expected: Vec<_> = bits(&ours).into_iter().filter(|root| f64::from_bits(root.0) != 0.0).collect();
+        prop_assert_eq!(others, expected);
+    }
+
+    #[test]
     fn the_interval_selects(c in any_quartic(), min in -2.0..2.0f64, length in 0.0..3.0f64) {
         let within = Interval::new(min, min + length);
         let kept: Vec<_> = found(&solve(c)).into_iter().filter(|root| within.contains(root.0)).collect();
@@ -186,10 +266,15 @@ fn the_same_bits_without_fused_products() {
             c = [0.0; 5];
             (0..9).for_each(|i| c[i / 3 + i % 3] += pair[i / 3] * other[i % 3]);
         }
+        let all = || {
+            let cubic = cubic([c[0], c[1], c[2], c[3]], Interval::LINE);
+            let quadratic = quadratic([c[0], c[1], c[2]], Interval::LINE);
+            (bits(&solve(c)), bits(&cubic), bits(&quadratic))
+        };
         set_level(Level::Portable);
-        let portable = bits(&solve(c));
+        let portable = all();
         set_level(best);
-        assert_eq!(portable, bits(&solve(c)), "{c:?}");
+        assert_eq!(portable, all(), "{c:?}");
     }
 }
 
@@ -230,4 +315,54 @@ fn multiple_roots_are_decided_exactly() {
     // (2 x - 1)^3 (x + 5), (3 x + 2)^4
     assert_eq!(found(&solve([-5.0, 29.0, -54.0, 28.0, 8.0])), [(-5.0, 1), (0.5, 3)]);
     assert_eq!(found(&solve([16.0, 96.0, 216.0, 216.0, 81.0])), [(-2.0 / 3.0, 4)]);
+}
+
+#[test]
+fn roots_below_the_normal_numbers_keep_their_order_and_number() {
+    let power = |k: i32| 2f64.powi(k / 2) * 2f64.powi(k - k / 2);
+    // A root that underflows beside a double root zero: the one on its right, the other on its left.
+    assert_eq!(found(&solve([0.0, 0.0, -1e-200, 1e200, 0.0])), [(0.0, 2), (0.0, 1)]);
+    assert_eq!(found(&solve([0.0, 0.0, 1e-200, 1e200, 0.0])), [(0.0, 1), (0.0, 2)]);
+    // 2^1016 (5 x - 3 2^-1043)^2: a double root among the subnormal numbers, and its neighbours.
+    for (near, count) in [(-1.0, 2), (0.0, 1), (1.0, 0)] {
+        let c = [(9.0 + near) * power(-1070), -30.0 * power(-27), 25.0 * power(1016)];
+        let roots = quadratic(c, Interval::LINE);
+        assert_eq!(roots.len(), count, "{roots:?}");
+        if count == 1 {
+            assert_eq!(found(&roots), [(0.6 * power(-1043), 2)]);
+        }
+        // Another root far away, of the greatest size; the term is far below the difference.
+        let roots = cubic([c[0], c[1], c[2], power(-2) * near], Interval::LINE);
+        let far = near * -25.0 * power(1018);
+        let expected = if near == 0.0 { count } else { count + 1 };
+        assert_eq!(roots.len(), expected, "{roots:?}");
+        assert!(near == 0.0 || roots.iter().any(|root| root.x == far), "{roots:?}");
+    }
+    // A critical point that underflows to zero, from below.
+    let c = [1.2e-315, 0.0, 5.4e-312, 2.3e232, 7e-9];
+    let cube_root = -(1.2e-315f64 * 1e300 / 2.3e232).cbrt() * 1e-100;
+    let roots = solve(c);
+    assert!(roots.len() == 2 && (roots[1].x / cube_root - 1.0).abs() < 1e-6, "{roots:?}");
+    // The least root there can be but zero, and the least that is not rounded to it.
+    assert_eq!(found(&solve([-f64::from_bits(1), f64::MAX, 0.0, 0.0, 0.0])), [(0.0, 1)]);
+    assert_eq!(found(&quadratic([-f64::from_bits(3), 2.0, 0.0], Interval::LINE)), [(f64::from_bits(2), 1)]);
+}
+
+#[test]
+fn roots_of_very_different_size_are_found_within_the_steps_allowed() {
+    // Far from the roots +-2.7e-152 Newton's method only halves the distance to them: 500 times from 1.
+    let c = [7.291118977622381e-304, 1.52990923101e-312, -1.0, -1.0000000000000004, -0.2500000000000002];
+    let small = 2.700207210127101e-152;
+    assert_eq!(found(&solve(c)), [(-2.0, 1), (-1.9999999999999982, 1), (-small, 1), (small, 1)]);
+    let mirrored = [c[0], -c[1], c[2], -c[3], c[4]];
+    assert_eq!(found(&solve(mirrored)), [(-small, 1), (small, 1), (1.9999999999999982, 1), (2.0, 1)]);
+}
+
+#[test]
+fn two_factors_with_one_constant_mirror_bit_for_bit() {
+    // Symmetric about -1/2; one root lies within 2^-58 of the middle of two numbers.
+    let c = [3.9723362078004277e-13, 0.0, -0.25, -0.5000000000000002, -0.2500000000000002];
+    let mirrored = solve([c[0], -c[1], c[2], -c[3], c[4]]);
+    let back: Vec<_> = mirrored.iter().rev().map(|root| (-root.x, root.multiplicity)).collect();
+    assert_eq!(found(&solve(c)), back);
 }

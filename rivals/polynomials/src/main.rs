@@ -1,8 +1,8 @@
 //! Polynomial solvers side by side: time, wrong counts and error of each on the hard quartics.
 //!
-//!     cargo run --release --bin polynomials [quartics.jsonl]
+//!     cargo run --release -p rivals-polynomials [-- [quartics.jsonl] [families]]
 //!
-//! Every answer is judged before anything is timed. The solvers take turns, pass by pass, so that a change of clock or a
+//! Every answer is judged before anything is timed; what is timed is the solver alone, with its own list. The solvers take turns, pass by pass, so that a change of clock or a
 //! neighbour on the machine meets all of them; the figure is the least time of all passes, per polynomial.
 
 use rt_core::Interval;
@@ -35,7 +35,8 @@ impl Answer {
     }
 }
 
-type Solver = (&'static str, fn(&[f64; 5]) -> Answer);
+/// A name, the answer to be judged, and the bare call to be timed.
+type Solver = (&'static str, fn(&[f64; 5]) -> Answer, fn(&[f64; 5]));
 
 fn by(method: Method, c: &[f64; 5]) -> Answer {
     let mut answer = Answer::default();
@@ -51,25 +52,56 @@ fn of(list: impl IntoIterator<Item = f64>) -> Answer {
     answer
 }
 
+/// An interval with all roots, for polycool.
+fn bound(c: &[f64; 5]) -> f64 {
+    1.0 + c[..4].iter().fold(0.0f64, |m, x| m.max((x / c[4]).abs()))
+}
+
 fn polycool(c: &[f64; 5]) -> Answer {
-    let bound = 1.0 + c[..4].iter().fold(0.0f64, |m, x| m.max((x / c[4]).abs()));
+    let bound = bound(c);
     if !bound.is_finite() {
         return Answer::default();
     }
     of(polycool::Poly::new(*c).roots_between(-bound, bound, 1e-15))
 }
 
+fn timed_polycool(c: &[f64; 5]) {
+    let bound = bound(c);
+    if bound.is_finite() {
+        black_box(polycool::Poly::new(*c).roots_between(-bound, bound, 1e-15));
+    }
+}
+
+fn timed(method: Method, c: &[f64; 5]) {
+    black_box(poly::roots(*c, Interval::LINE, method));
+}
+
 const SOLVERS: &[Solver] = &[
-    ("kurbo", |c| of(kurbo::common::solve_quartic(c[0], c[1], c[2], c[3], c[4]))),
-    ("ours", |c| by(Method::Certified, c)),
-    ("ferrari", |c| by(Method::Ferrari, c)),
-    ("graphics gems", |c| by(Method::GraphicsGems, c)),
-    ("roots", |c| of(roots::find_roots_quartic(c[4], c[3], c[2], c[1], c[0]).as_ref().iter().copied())),
-    ("polycool", polycool),
+    (
+        "kurbo",
+        |c| of(kurbo::common::solve_quartic(c[0], c[1], c[2], c[3], c[4])),
+        |c| {
+            black_box(kurbo::common::solve_quartic(c[0], c[1], c[2], c[3], c[4]));
+        },
+    ),
+    ("ours", |c| by(Method::Certified, c), |c| timed(Method::Certified, c)),
+    ("ferrari", |c| by(Method::Ferrari, c), |c| timed(Method::Ferrari, c)),
+    ("graphics gems", |c| by(Method::GraphicsGems, c), |c| timed(Method::GraphicsGems, c)),
+    (
+        "roots",
+        |c| of(roots::find_roots_quartic(c[4], c[3], c[2], c[1], c[0]).as_ref().iter().copied()),
+        |c| {
+            black_box(roots::find_roots_quartic(c[4], c[3], c[2], c[1], c[0]));
+        },
+    ),
+    ("polycool", polycool, timed_polycool),
 ];
 
-fn load(path: &str) -> Vec<Case> {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e}"));
+fn load(path: &std::path::Path) -> Vec<Case> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| {
+        eprintln!("{}: {error}", path.display());
+        std::process::exit(2);
+    });
     let case = |line: &str| {
         let row: Value = serde_json::from_str(line).expect("JSON");
         let roots = row["roots"].as_array().expect("roots");
@@ -78,7 +110,12 @@ fn load(path: &str) -> Vec<Case> {
             c: std::array::from_fn(|i| row["c"][i].as_f64().expect("coefficient")),
             roots: roots
                 .iter()
-                .map(|r| (r[0].as_str().expect("root").parse().expect("root"), r[1].as_u64().expect("times") as u32))
+                .map(|r| {
+                    (
+                        r[0].as_str().expect("root").parse().expect("root"),
+                        r[1].as_u64().expect("times") as u32,
+                    )
+                })
                 .collect(),
             margin: row["margin"].as_f64().expect("margin"),
         }
@@ -116,16 +153,22 @@ fn times(cases: &[&Case], solvers: &[Solver], seconds: f64) -> Vec<f64> {
     let begun = Instant::now();
     let mut passes = 0;
     while begun.elapsed().as_secs_f64() < seconds || passes < 5 {
-        for (least, (_, solver)) in least.iter_mut().zip(solvers) {
+        for (least, (_, _, solver)) in least.iter_mut().zip(solvers) {
             let start = Instant::now();
             for case in cases {
-                black_box(solver(black_box(&case.c)));
+                solver(black_box(&case.c));
             }
             *least = least.min(start.elapsed().as_nanos() as f64 / cases.len() as f64);
         }
         passes += 1;
     }
     least
+}
+
+fn listed<const N: usize>(roots: poly::Roots<N>) -> Answer {
+    let mut answer = Answer::default();
+    roots.iter().for_each(|root| answer.add(root.x, root.multiplicity));
+    answer
 }
 
 /// Quadratics and cubics of uniform random coefficients: kurbo and ours in turns.
@@ -147,20 +190,34 @@ fn lower_degrees() {
         .collect();
     let cases: Vec<&Case> = cases.iter().collect();
     let solvers: [Solver; 4] = [
-        ("kurbo quadratic", |c| of(kurbo::common::solve_quadratic(c[0], c[1], c[2]))),
-        ("ours quadratic", |c| {
-            let mut answer = Answer::default();
-            let roots = poly::quadratic([c[0], c[1], c[2]], Interval::LINE);
-            roots.iter().for_each(|root| answer.add(root.x, root.multiplicity));
-            answer
-        }),
-        ("kurbo cubic", |c| of(kurbo::common::solve_cubic(c[0], c[1], c[2], c[3]))),
-        ("ours cubic", |c| {
-            let mut answer = Answer::default();
-            let roots = poly::cubic([c[0], c[1], c[2], c[3]], Interval::LINE);
-            roots.iter().for_each(|root| answer.add(root.x, root.multiplicity));
-            answer
-        }),
+        (
+            "kurbo quadratic",
+            |c| of(kurbo::common::solve_quadratic(c[0], c[1], c[2])),
+            |c| {
+                black_box(kurbo::common::solve_quadratic(c[0], c[1], c[2]));
+            },
+        ),
+        (
+            "ours quadratic",
+            |c| listed(poly::quadratic([c[0], c[1], c[2]], Interval::LINE)),
+            |c| {
+                black_box(poly::quadratic([c[0], c[1], c[2]], Interval::LINE));
+            },
+        ),
+        (
+            "kurbo cubic",
+            |c| of(kurbo::common::solve_cubic(c[0], c[1], c[2], c[3])),
+            |c| {
+                black_box(kurbo::common::solve_cubic(c[0], c[1], c[2], c[3]));
+            },
+        ),
+        (
+            "ours cubic",
+            |c| listed(poly::cubic([c[0], c[1], c[2], c[3]], Interval::LINE)),
+            |c| {
+                black_box(poly::cubic([c[0], c[1], c[2], c[3]], Interval::LINE));
+            },
+        ),
     ];
     // The counts of ours are exact: how often kurbo's differ.
     for pair in solvers.chunks(2) {
@@ -168,15 +225,40 @@ fn lower_degrees() {
         println!("{} and {}: {differ} of {} counts differ", pair[0].0, pair[1].0, cases.len());
     }
     let ns = times(&cases, &solvers, 2.0);
-    for (k, (name, _)) in solvers.iter().enumerate() {
+    for (k, (name, ..)) in solvers.iter().enumerate() {
         println!("{:<22}{:<15}{:>8.1}{:>8.2}", "uniform", name, ns[k], ns[k] / ns[k / 2 * 2]);
     }
 }
 
+const USAGE: &str = "\
+usage: rivals-polynomials [QUARTICS.jsonl] [families]
+
+Time, wrong counts and error of polynomial solvers, in turns: quadratics and cubics of
+uniform coefficients, and the quartics of a file (without one: ../shared/cases/quartics.jsonl
+beside the repository if it is there, otherwise those of the tests): sample_F, torus*, all.
+With 'families' each family by itself, ours and kurbo only.
+";
+
 fn main() {
-    let path = std::env::args().nth(1).unwrap_or_else(|| "../shared/cases/quartics.jsonl".into());
+    let (mut path, mut detail) = (None, false);
+    for argument in std::env::args().skip(1) {
+        match argument.as_str() {
+            "-h" | "--help" => return print!("{USAGE}"),
+            "families" => detail = true,
+            option if option.starts_with('-') => {
+                eprintln!("unknown option {option}\n{USAGE}");
+                std::process::exit(2);
+            }
+            file => path = Some(std::path::PathBuf::from(file)),
+        }
+    }
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    // The large set if it is here, otherwise the part of it in the repository.
+    let path = path.unwrap_or_else(|| {
+        let shared = root.join("../shared/cases/quartics.jsonl");
+        if shared.is_file() { shared } else { root.join("crates/rt-core/tests/data/quartics.jsonl") }
+    });
     lower_degrees();
-    let detail = std::env::args().any(|a| a == "families");
     let all = load(&path);
     let mut sets: Vec<(String, Vec<&Case>)> = vec![
         ("sample_F".into(), all.iter().filter(|c| c.family == "sample_F").collect()),
@@ -189,15 +271,29 @@ fn main() {
         sets.extend(names.iter().map(|&n| (n.clone(), all.iter().filter(|c| &c.family == n).collect())));
     }
     let solvers = if detail { &SOLVERS[..2] } else { SOLVERS };
-    println!("{:<22}{:<15}{:>8}{:>8}{:>7}{:>10}{:>10}", "set", "solver", "ns", "/kurbo", "wrong", "p99 (u)", "max (u)");
+    println!(
+        "{:<22}{:<15}{:>8}{:>8}{:>7}{:>10}{:>10}",
+        "set", "solver", "ns", "/kurbo", "wrong", "p99 (u)", "max (u)"
+    );
     for (name, cases) in sets.iter().filter(|s| !s.1.is_empty()) {
-        let judged: Vec<_> = solvers.iter().map(|(_, s)| judge(cases, *s)).collect();
+        let judged: Vec<_> = solvers.iter().map(|(_, s, _)| judge(cases, *s)).collect();
         let ns = times(cases, solvers, if detail { 0.15 } else { 3.0 });
         for ((solver, ns_one), (wrong, errors)) in solvers.iter().zip(&ns).zip(&judged) {
-            let at = |q: f64| errors.get(((errors.len() as f64 * q) as usize).min(errors.len().max(1) - 1)).copied().unwrap_or(0.0);
+            let at = |q: f64| {
+                errors
+                    .get(((errors.len() as f64 * q) as usize).min(errors.len().max(1) - 1))
+                    .copied()
+                    .unwrap_or(0.0)
+            };
             println!(
                 "{:<22}{:<15}{:>8.0}{:>8.2}{:>7} {:>9.2e} {:>9.2e}",
-                name, solver.0, ns_one, ns_one / ns[0], wrong, at(0.99), at(1.0)
+                name,
+                solver.0,
+                ns_one,
+                ns_one / ns[0],
+                wrong,
+                at(0.99),
+                at(1.0)
             );
         }
     }

@@ -29,7 +29,8 @@ pub(super) fn solve<P: Product, const N: usize>(c: &[Double]) -> Roots<N, Double
     let nonzero = monotone_roots::<P>(&p, true);
     let mut roots = Roots::default();
     for root in nonzero.iter() {
-        if zeros > 0 && root.x.high > 0.0 {
+        // A root that underflows keeps its place: the least root has the sign of -c0/c1, nearly, and the others are far.
+        if zeros > 0 && (root.x.high > 0.0 || root.x.high == 0.0 && p.falls_through_zero()) {
             roots.push(Double::ZERO, zeros);
             zeros = 0;
         }
@@ -50,27 +51,82 @@ struct Knot {
     reach: f64,
 }
 
+/// Where roots are told apart into small and large ones: no `f64` is within 2^-54 of it, relative, so that a root
+/// belongs to the same side in both ways of computing it.
+const PARTING: Double = Double { high: exp2i(-900), low: exp2i(-954) };
+
 /// The roots of a polynomial of degree up to four. `exact`: decide multiple roots by the exact test.
+///
+/// Below 2^-960 a double-double loses its low part, and below 2^-1074 everything: when there may be such roots, the
+/// small ones are found in the variable `x 2^1600`. The least root there can be, a ratio of two `f64`, is
+/// above 2^-2100.
 fn monotone_roots<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
     let mut roots = Roots::default();
     if p.degree() == 0 {
         return roots;
     }
+    if p.least_exponent() < -960 {
+        return small_and_large::<P>(p, exact);
+    }
+    let [left, right] = ends::<P>(p);
+    between::<P>(p, &critical::<P>(p), left, right, exact, &mut roots);
+    roots
+}
+
+fn small_and_large<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
+    let mut roots = Roots::default();
+    let at = |x: Double| Knot { x, sign: sign_of(p.at::<P>(x).value), reach: f64::INFINITY };
+    let [left, right] = ends::<P>(p);
+    let large = right.x.high > PARTING.high;
+    let critical = if large { critical::<P>(p) } else { Roots::default() };
+    if large {
+        between::<P>(p, &critical, left, at(-PARTING), exact, &mut roots);
+    }
+    let end = PARTING.scale_exact(exp2i(800)).scale_exact(exp2i(800));
+    let small = monotone_roots::<P>(&p.in_units(-1600), exact);
+    for root in small.iter().filter(|root| (root.x - end).high < 0.0 && (root.x + end).high > 0.0) {
+        roots.push(reduced(root.x), root.multiplicity);
+    }
+    if large {
+        between::<P>(p, &critical, at(PARTING), right, exact, &mut roots);
+    }
+    roots
+}
+
+/// `y 2^-1600`; its high part is the nearest `f64` even where that is subnormal.
+fn reduced(y: Double) -> Double {
+    let y = y.scale_exact(exp2i(-700));
+    let high = y.high * exp2i(-900);
+    let low = ((y.high - high * exp2i(900)) + y.low) * exp2i(-900);
+    Double::sum(high, low)
+}
+
+/// Places beyond all roots, or the greatest numbers.
+fn ends<P: Product>(p: &Polynomial) -> [Knot; 2] {
     let bound = p.bound_exponent();
     let end = if bound > 1023 { f64::MAX } else { ldexp(1.0, bound) };
-    let end_sign = |side: i32| {
-        if bound <= 1023 {
-            return p.sign_at_infinity(side);
-        }
-        sign_of(p.at::<P>(Double::from(end * f64::from(side))).value)
-    };
-    let left = Knot { x: Double::from(-end), sign: end_sign(-1), reach: f64::INFINITY };
-    let right = Knot { x: Double::from(end), sign: end_sign(1), reach: f64::INFINITY };
+    [-1, 1].map(|side| {
+        let x = Double::from(end * f64::from(side));
+        let sign = if bound <= 1023 { p.sign_at_infinity(side) } else { sign_of(p.at::<P>(x).value) };
+        Knot { x, sign, reach: f64::INFINITY }
+    })
+}
 
-    let critical =
-        if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() };
+fn critical<P: Product>(p: &Polynomial) -> Roots<4, Double> {
+    if p.degree() > 1 { monotone_roots::<P>(&p.derivative(), false) } else { Roots::default() }
+}
+
+/// Appends the roots between two places, neither of them a root, given the critical points.
+fn between<P: Product>(
+    p: &Polynomial,
+    critical: &Roots<4, Double>,
+    left: Knot,
+    right: Knot,
+    exact: bool,
+    roots: &mut Roots<4, Double>,
+) {
     let mut from = left;
-    for c in critical.iter() {
+    for c in critical.iter().filter(|c| c.x > left.x && c.x < right.x) {
         let knot = match plain_knot::<P>(p, c.x) {
             Some(knot) => knot,
             None => {
@@ -99,7 +155,6 @@ fn monotone_roots<P: Product>(p: &Polynomial, exact: bool) -> Roots<4, Double> {
         let root = refine::<P>(p, from, right);
         roots.push(root, 1);
     }
-    roots
 }
 
 fn sign_of(value: Double) -> i32 {
@@ -153,9 +208,12 @@ fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
     let mut origin = 0.0;
     let mut local = *p;
     let mut last = f64::INFINITY;
-    // Every other step at least halves the bracket on the scale of the representable numbers (2^64 of them), so that
-    // 2 * (64 + 53) steps suffice; Newton's method takes 3 to 6.
-    for _ in 0..234 {
+    // Newton's method squares the error: from 2^-1 to 2^-64 in six steps, and usually takes 3 to 6. Far from two nearly
+    // equal roots it only halves the distance, so after six steps in a row the bracket is halved instead: in the
+    // order of the representable numbers, of which there are 2^64 and 2^53 low parts to each, or at least shortened by a
+    // third where the mean is taken. Twice 7 (64 + 53) steps are more than enough.
+    let mut in_a_row = 0;
+    for _ in 0..1638 {
         if !(x > low && x < high) {
             x = middle(low, high);
         }
@@ -200,7 +258,13 @@ fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
         }
         let short = step.abs() <= 0.5 * last;
         last = if short { step.abs() } else { f64::INFINITY };
-        x = if short && root > low && root < high { root } else { middle(low, high) };
+        if short && in_a_row < 6 && root > low && root < high {
+            in_a_row += 1;
+            x = root;
+        } else {
+            in_a_row = 0;
+            x = middle(low, high);
+        }
     }
     x
 }
@@ -212,8 +276,8 @@ fn middle(low: Double, high: Double) -> Double {
     if near {
         return (low.scale_exact(0.5)) + high.scale_exact(0.5);
     }
-    // The order of the bits of `f64` is that of their absolute values.
-    let key = |x: f64| if x < 0.0 { -((-x).to_bits() as i64) } else { x.to_bits() as i64 };
+    // The order of the bits of `f64` is that of their absolute values; zero has one sign.
+    let key = |x: f64| if x < 0.0 { -((-x).to_bits() as i64) } else { (x + 0.0).to_bits() as i64 };
     let mean = (i128::from(key(a)) + i128::from(key(b))) / 2;
     let mean = mean as i64;
     Double::from(if mean < 0 { -f64::from_bits(mean.unsigned_abs()) } else { f64::from_bits(mean as u64) })

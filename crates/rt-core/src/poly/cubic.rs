@@ -2,10 +2,11 @@
 
 use super::quartic::discs::{LEFT, compensated, real};
 use super::quartic::split::{Factor, isolated_root};
-use super::{Roots, quartic};
+use super::{Roots, Simple, quartic};
 use crate::Interval;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent, sqrt};
+use core::hint::select_unpredictable;
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
 ///
@@ -19,36 +20,37 @@ use crate::math::{exp2i, exponent, sqrt};
 /// assert_eq!((roots.len(), roots[0].x), (1, 1.0));
 /// ```
 pub fn cubic(c: [f64; 4], within: Interval) -> Roots<3> {
-    run(Solve { c }).inside(within)
+    run(Solve { c: &c, within })
 }
 
-struct Solve {
-    c: [f64; 4],
+struct Solve<'a> {
+    c: &'a [f64; 4],
+    within: Interval,
 }
 
-impl Task for Solve {
+impl Task for Solve<'_> {
     type Output = Roots<3>;
     #[inline(always)]
     fn run<P: Product>(self) -> Self::Output {
-        match quick::<P>(&self.c) {
-            Some(roots) => roots,
-            None => general::<P>(&self.c),
+        match quick::<P>(self.c) {
+            Some(roots) => roots.inside(self.within),
+            None => general::<P>(self.c, self.within),
         }
     }
 }
 
 #[inline(never)]
-fn general<P: Product>(&[c0, c1, c2, c3]: &[f64; 4]) -> Roots<3> {
+fn general<P: Product>(&[c0, c1, c2, c3]: &[f64; 4], within: Interval) -> Roots<3> {
     if !(c0.is_finite() && c1.is_finite() && c2.is_finite() && c3.is_finite()) {
         return Roots::default();
     }
-    quartic::all_roots::<P>(&[c0, c1, c2, c3, 0.0]).within(Interval::LINE)
+    quartic::all_roots::<P>(&[c0, c1, c2, c3, 0.0]).within(within)
 }
 
 /// The `f64` way: the root farthest from the others, the quadratic that is left, and the certificate by inclusion
 /// discs (as for the quartic), of radius `3 |W|` for degree three.
 #[inline(always)]
-pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Roots<3>> {
+pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Simple<3>> {
     // Exponents within 80 of 0: the sixth power of a ratio, the largest product, stays below 2^1000.
     let usual = |c: f64| (exponent(c) + 80) as u32 <= 160;
     if !(usual(c[0]) && usual(c[3]) && (usual(c[1]) || c[1] == 0.0) && (usual(c[2]) || c[2] == 0.0)) {
@@ -60,14 +62,14 @@ pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Roots<3>> {
     let t = a * (1.0 / 3.0);
     let t2 = t * t;
     let x = isolated_root(b - 3.0 * t2, d - t * (b - 2.0 * t2)) - t;
-    // Division by x - x1 from the end where it is stable.
-    let rest = if (x * x * x).abs() > d.abs() {
-        let inverse = 1.0 / x;
-        let constant = -d * inverse;
-        Factor { linear: (constant - b) * inverse, constant }
-    } else {
-        let linear = a + x;
-        Factor { linear, constant: b + linear * x }
+    // Division by x - x1 from the end where it is stable; both are computed, as the choice cannot be foreseen.
+    let inverse = 1.0 / x;
+    let constant = -d * inverse;
+    let linear = a + x;
+    let below = (x * x * x).abs() > d.abs();
+    let rest = Factor {
+        linear: select_unpredictable(below, (constant - b) * inverse, linear),
+        constant: select_unpredictable(below, constant, b + linear * x),
     };
     let discriminant = 0.25 * rest.linear * rest.linear - rest.constant;
     if discriminant > 0.0 {
@@ -80,7 +82,7 @@ pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Roots<3>> {
 
 /// Three real roots.
 #[inline(always)]
-fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Roots<3>> {
+fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Simple<3>> {
     let greater = |a: f64, b: f64| if a > b { a } else { b };
     let less = |a: f64, b: f64| if a < b { a } else { b };
     // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-58 after four.
@@ -112,11 +114,7 @@ fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Roots<3>> {
         if apart && done {
             let (a, b) = (less(x[0], x[1]), greater(x[0], x[1]));
             let (b, c) = (less(b, x[2]), greater(b, x[2]));
-            let mut roots = Roots::default();
-            roots.push(less(a, b), 1);
-            roots.push(greater(a, b), 1);
-            roots.push(c, 1);
-            return Some(roots);
+            return Some(Simple::All([less(a, b), greater(a, b), c]));
         }
         if !(x[0] + x[1] + x[2]).is_finite() {
             return None;
@@ -127,7 +125,7 @@ fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Roots<3>> {
 
 /// A real root and a pair of complex ones, those of `rest`.
 #[inline(always)]
-fn one<P: Product>(c: &[f64; 4], mut x: f64, rest: &Factor, discriminant: f64) -> Option<Roots<3>> {
+fn one<P: Product>(c: &[f64; 4], mut x: f64, rest: &Factor, discriminant: f64) -> Option<Simple<3>> {
     let (a, b) = (rest.linear, rest.constant);
     let (re, im2) = (-0.5 * a, -discriminant);
     // The remainder of the division by the pair's factor bounds |p(z)|; its roundings are below 2^-46 of the terms.
@@ -155,9 +153,7 @@ fn one<P: Product>(c: &[f64; 4], mut x: f64, rest: &Factor, discriminant: f64) -
         // The pair's two errors over their distance: 2 * 3 |p(z)| / (2 |c3| im far^2), times im.
         let share = residual * inverse.abs();
         if w.abs() * (1.2 * share + exp2i(-48) * im) <= (LEFT * next.abs() - noise) * im {
-            let mut roots = Roots::default();
-            roots.push(next, 1);
-            return Some(roots);
+            return Some(Simple::One(next));
         }
         x = next;
     }

@@ -123,6 +123,45 @@ impl<const N: usize> Roots<N> {
     }
 }
 
+/// What the quick ways find: simple roots, ascending. Only numbers, so that [`Roots`] are written once, where they are
+/// returned: a copy of what was just written piece by piece costs as much as a division.
+#[derive(Clone, Copy)]
+enum Simple<const N: usize> {
+    None,
+    One(f64),
+    All([f64; N]),
+}
+
+impl<const N: usize> Simple<N> {
+    /// As a list, only those inside the interval.
+    #[inline(always)]
+    fn inside<const M: usize>(self, within: Interval) -> Roots<M> {
+        #[cold]
+        #[inline(never)]
+        fn selected<const K: usize, const M: usize>(x: [f64; K], within: Interval) -> Roots<M> {
+            let mut roots = Roots::default();
+            x.iter().filter(|&&x| within.contains(x)).for_each(|&x| roots.push(x, 1));
+            roots
+        }
+        #[inline(always)]
+        fn list<const K: usize, const M: usize>(x: [f64; K], within: Interval) -> Roots<M> {
+            // With the first and the last all are inside.
+            if !(x.first().is_some_and(|&x| within.contains(x))
+                && x.last().is_some_and(|&x| within.contains(x)))
+            {
+                return selected(x, within);
+            }
+            let root = |i: usize| x.get(i).map_or(Root::default(), |&x| Root { x, multiplicity: 1 });
+            Roots { list: core::array::from_fn(root), len: K, all: false }
+        }
+        match self {
+            Simple::None => Roots::default(),
+            Simple::One(x) => list([x], within),
+            Simple::All(x) => list(x, within),
+        }
+    }
+}
+
 impl<const N: usize> Roots<N, Double> {
     /// The roots rounded to `f64`; those too large for it are left out.
     #[inline]

@@ -156,6 +156,31 @@ impl Polynomial {
         bound + 1
     }
 
+    /// An exponent below that of every root but zero: the bound of the reversed polynomial. Zero if there is no such
+    /// root.
+    pub fn least_exponent(&self) -> i32 {
+        let mut nonzero = self.terms.iter().enumerate().filter(|(_, t)| t.mantissa.high != 0.0);
+        let Some((first, constant)) = nonzero.next() else { return 0 };
+        let of =
+            |(k, t): (usize, &Term)| (constant.exponent - t.exponent - 1).div_euclid((k - first) as i32) - 1;
+        nonzero.map(of).min().unwrap_or(0)
+    }
+
+    /// In the variable `y`, `x = y 2^exponent`.
+    pub fn in_units(&self, exponent: i32) -> Self {
+        let mut stretched = *self;
+        for (k, term) in stretched.terms.iter_mut().enumerate() {
+            term.exponent += exponent * k as i32;
+        }
+        stretched
+    }
+
+    /// Whether the values at zero and the slope there have opposite signs: then the least root is positive, if it is by
+    /// far the least.
+    pub fn falls_through_zero(&self) -> bool {
+        (self.terms[0].mantissa.high > 0.0) != (self.terms[1].mantissa.high > 0.0)
+    }
+
     /// The exponent below which the constant term is the greatest: where to look about `x = 0`.
     fn balance(&self) -> i32 {
         let constant = self.terms[0].exponent;

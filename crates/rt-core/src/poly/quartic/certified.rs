@@ -111,12 +111,12 @@ fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
         }
         2 => {
             let c = [d[0], d[1], d[2]];
-            let roots = super::super::quadratic::quick::<P>(&c).map(|roots| roots.within(Interval::LINE));
+            let roots = super::super::quadratic::quick::<P>(&c).map(|roots| roots.inside(Interval::LINE));
             roots.or_else(|| quadratic::<P>(&c)).map(with_zeros)
         }
         3 => {
             let roots = super::super::cubic::quick::<P>(&[d[0], d[1], d[2], d[3]]);
-            let roots = roots.map(|roots| roots.within(Interval::LINE));
+            let roots = roots.map(|roots| roots.inside(Interval::LINE));
             roots.or_else(|| quick::<P>(&[0.0, d[0], d[1], d[2], d[3]])).map(with_zeros)
         }
         _ => None,

@@ -12,6 +12,7 @@ use super::super::Roots;
 use super::split::Factor;
 use crate::kernel::Product;
 use crate::math::{exp2i, sqrt};
+use core::hint::select_unpredictable;
 
 /// What is left of the error before the last rounding, relative: a thirty-second of a unit roundoff.
 pub(in super::super) const LEFT: f64 = exp2i(-58);
@@ -37,7 +38,7 @@ pub(super) fn roots<P: Product>(c: &[f64; 5], factors: &[Factor; 2]) -> Option<R
 pub(in super::super) fn real(f: &Factor, d: f64) -> [f64; 2] {
     let h = -0.5 * f.linear;
     let s = sqrt(d);
-    let q = if h >= 0.0 { h + s } else { h - s };
+    let q = select_unpredictable(h >= 0.0, h + s, h - s);
     // Plus zero: the root 0 has no sign.
     [q, f.constant / q + 0.0]
 }
