@@ -354,7 +354,6 @@ fn bounds_of_a_needle() {
 /// A ray that starts exactly at the apex: there is no direction away from the axis, and what double-double leaves of one
 /// is noise.
 #[test]
-#[ignore = "known gap: the normal is not of unit length"]
 fn a_start_at_the_apex() {
     let apex = DVec3::splat(115.44921875);
     let base = DVec3::new(-0.1, 28.75 + 1e-13, 115.44921875);

@@ -82,7 +82,10 @@ impl Task for FindSurface<'_> {
         let along = f.axis.mul::<P>(z);
         let away = local - along;
         let distance = away.length_squared::<P>().sqrt::<P>();
-        let outward = if distance.high > 0.0 {
+        // `away` is known to 2^-104 of the size: nearer than this it says nothing of a direction that the place, rounded
+        // to 2^-53, could not say otherwise.
+        let apart = distance.high > exp2i(-90);
+        let outward = if apart {
             away.mul::<P>(Double::ONE.div::<P>(distance))
         } else {
             // On the axis, at the apex: there is no direction away from it.
@@ -94,7 +97,7 @@ impl Task for FindSurface<'_> {
             local = along + outward.mul::<P>(radius);
         }
         let mut normal = (outward.mul::<P>(f.radial) + f.axis.mul::<P>(f.axial)).high();
-        if distance.high <= 0.0 {
+        if !apart {
             normal = if f.axial.high < 0.0 { -f.axis.high() } else { f.axis.high() };
         }
         let half = if line.depth.high > 0.0 { sqrt(line.depth.high) } else { 0.0 };

@@ -170,8 +170,11 @@ fn finished(line: &Line, x: Double, slope: f64, step: f64) -> bool {
     left(line, x, slope, step) <= 0.5 * f64::EPSILON * f64::EPSILON
 }
 
-/// The error that Newton's step leaves: `step^2 f'' / (2 f')`, from the series of `f`.
+/// The error that Newton's step leaves: from the series of `f` about `x`, the new place,
+/// `(step^2 f'' / 2 + step^3 f''' / 3 + 3 step^4) / f'`. `slope` is a quarter of the derivative.
 #[inline(always)]
 pub(super) fn left(line: &Line, x: Double, slope: f64, step: f64) -> f64 {
-    (step * step * line.bend(x.high) / slope).abs()
+    let step = step.abs();
+    let bend = line.bend(x.high).abs() + step * (2.0 * x.high.abs() + 0.75 * step);
+    (step * step * bend / slope).abs()
 }

@@ -349,7 +349,8 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
     let rising = from_high.is_nan() || from_low <= from_high;
     let (near, offset) = if rising { (low, from_low) } else { (high, -from_high) };
     if near.sharp {
-        return near.x + (near.low + beside(near, offset));
+        let far = if rising { high.x - low.x } else { low.x - high.x };
+        return near.x + (near.low + beside(near, offset, far));
     }
     let (mut a, mut b) = (low.x, high.x);
     let mut x = near.x + offset;
@@ -368,9 +369,11 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
         let next = x - step;
         if next > a && next < b {
             x = next;
-            // The step leaves an error of step^2 f'' / (2 f'), by the series of f; a twentieth of the value's own is
-            // enough.
-            if 80.0 * (step * step * line.bend(x)).abs() <= error {
+            // By the series of f about the new place, whose fourth derivative is 24, the value there is
+            // s^2 f'' / 2 + s^3 f''' / 3 + 3 s^4; a twentieth of the value's own error is enough.
+            let size = step.abs();
+            let left = 4.0 * line.bend(x).abs() + size * (8.0 * x.abs() + 3.0 * size);
+            if 20.0 * (size * size * left) <= error {
                 break;
             }
         } else if value.abs() <= error {
@@ -382,21 +385,35 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
     x
 }
 
-/// How far from a sharp extremum the crossing next to it is, from the parabola's guess: the zero of the Taylor series
-/// `value + bend y^2 + 4 x y^3 + y^4`, which knows it to a few roundings of itself.
+/// How far from a sharp extremum the crossing is that lies between it and the place `far` away, where the sign differs:
+/// from the parabola's guess to the zero of the Taylor series `value + bend y^2 + 4 x y^3 + y^4`, which knows it to a few
+/// roundings of itself.
 #[inline(always)]
-fn beside(node: &Node, guess: f64) -> f64 {
-    let mut y = guess;
-    // The guess is off by a part of the order of y; each step squares that.
-    for _ in 0..8 {
+fn beside(node: &Node, guess: f64, far: f64) -> f64 {
+    let (mut near, mut beyond) = (0.0, far);
+    let between = |y: f64, near: f64, beyond: f64| (y - near) * (y - beyond) < 0.0;
+    let mut y = if between(guess, near, beyond) { guess } else { 0.5 * far };
+    // The guess is off by a part of the order of y, and each step squares that, unless an inflection lies between. Then
+    // Newton's method may first run far beyond and come back by a quarter of the way a step, or the bracket is halved.
+    for _ in 0..120 {
         let cubic = 4.0 * node.x + y;
         let value = node.value + y * y * (node.bend + y * cubic);
         let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
-        let step = value / slope;
-        if !step.is_finite() {
-            break;
+        if (value < 0.0) == node.inside {
+            near = y;
+        } else {
+            beyond = y;
         }
-        y -= step;
+        let step = value / slope;
+        let next = y - step;
+        if between(next, near, beyond) {
+            y = next;
+        } else if step.abs() <= exp2i(-30) * y.abs() {
+            break;
+        } else {
+            y = 0.5 * (near + beyond);
+            continue;
+        }
         if step.abs() <= exp2i(-30) * y.abs() {
             break;
         }

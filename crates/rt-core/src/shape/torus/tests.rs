@@ -359,3 +359,21 @@ proptest! {
         }
     }
 }
+
+/// A line that runs through a thin tube lengthwise and leaves it beyond an inflection of `f`: the parabola at the extremum
+/// says nothing of that crossing.
+#[test]
+fn a_crossing_beyond_an_inflection() {
+    let torus = Torus::new([0.0; 3], [0.0, 0.0, -1.0], 0.5, 0.017768905136251786).unwrap();
+    let ray = Ray::new(
+        [0.6422513966388842, 0.18039910955834407, 0.08772137123195826],
+        [-0.7612833144901687, 0.45035655594614227, -0.16838791491287675],
+    );
+    let hits = all(&torus, &ray);
+    assert_eq!(hits.len(), 2);
+    for hit in hits {
+        let surface = torus.surface(&ray, hit);
+        assert!((surface.t - hit.t()).abs() <= 1e-14);
+        assert!(off(&torus, surface.local) <= 2.0 * f64::EPSILON);
+    }
+}
