@@ -361,7 +361,16 @@ fn roots_of_very_different_size_are_found_within_the_steps_allowed() {
 #[test]
 fn two_factors_with_one_constant_mirror_bit_for_bit() {
     // Symmetric about -1/2; one root lies within 2^-58 of the middle of two numbers.
-    let c = [3.9723362078004277e-13, 0.0, -0.25, -0.5000000000000002, -0.2500000000000002];
+    mirrors([3.9723362078004277e-13, 0.0, -0.25, -0.5000000000000002, -0.2500000000000002]);
+}
+
+/// The critical points on both sides of the middle root are alike, which left the solver's first place to their order.
+#[test]
+fn a_root_between_like_extrema_mirrors_bit_for_bit() {
+    mirrors([7.56e-322, 1.3202428078720961e-192, 1.3202428078732969e-192, -2.7499999999999996, 0.0]);
+}
+
+fn mirrors(c: [f64; 5]) {
     let mirrored = solve([c[0], -c[1], c[2], -c[3], c[4]]);
     let back: Vec<_> = mirrored.iter().rev().map(|root| (-root.x, root.multiplicity)).collect();
     assert_eq!(found(&solve(c)), back);

@@ -196,10 +196,10 @@ fn developed_knot<P: Product>(p: &Polynomial, x: Double) -> Option<Knot> {
 /// The root between two places of opposite sign, to about 2^-60 of its size.
 fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
     let (mut low, mut high) = (from.x, to.x);
-    // Start where the parabola of the nearer end vanishes.
+    // Start where the parabola of the nearer end vanishes, or between equal ones: mirrored questions go mirrored ways.
     let mut x = if from.reach < to.reach {
         low + from.reach
-    } else if to.reach < f64::INFINITY {
+    } else if to.reach < from.reach {
         high - to.reach
     } else {
         middle(low, high)
