@@ -26,16 +26,17 @@ impl Errors {
         errors.sort_by(f64::total_cmp);
         let at = |q: f64| {
             let rank = (q * errors.len() as f64).ceil() as usize;
-            errors.get(rank.max(1) - 1).copied().unwrap_or(0.0)
+            errors.get(rank.max(1) - 1).copied().unwrap_or(f64::NAN)
         };
         Errors { count: errors.len(), wrong, median: at(0.5), p99: at(0.99), max: at(1.0) }
     }
 }
 
-/// A number at three significant digits, plain between 0.01 and 10 000.
+/// A number at three significant digits, plain between 0.01 and 10 000; a dash for NaN, which says that there is none.
 pub fn brief(x: f64) -> String {
     match x {
         0.0 => "0".into(),
+        x if x.is_nan() => "-".into(),
         x if x.is_infinite() => "inf".into(),
         x if (1e-2..1e4).contains(&x.abs()) => {
             let digits = (2 - x.abs().log10().floor() as i32).max(0) as usize;
