@@ -368,3 +368,15 @@ fn a_start_at_the_apex() {
         }
     }
 }
+
+/// A direction whose square is far from that of the sphere: half the chord in parameters, squared, would underflow.
+#[test]
+fn a_small_sphere_and_a_long_direction() {
+    let center = [-1.0287412279618176e-36, 4.173004945419121e-37, 1.608039537726426e-36];
+    let sphere = Sphere::new(center, 1.7720577338645984e-36).unwrap();
+    let origin = [2.468540715115978e-37, -1.7439560720402531e-37, 1.4802045270745023e-36];
+    let ray = Ray::new(origin, [1.2657124462983445e128, -6.758383742847422e129, 2.285150965188732e130]);
+    let mut all = Vec::new();
+    sphere.crossings(&ray, Interval::LINE, &mut |hit| all.push(hit));
+    assert_eq!((all.len(), sphere.hit(&ray, Interval::LINE)), (2, all.first().copied()));
+}

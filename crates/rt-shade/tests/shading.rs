@@ -324,23 +324,19 @@ fn a_cutoff_leaves_out_rays_by_their_share_and_is_off_by_default() {
     // Two mirrors face each other; each generation is worth 0.3 of the one before. Ambient light on each: 0.25.
     let mirror = Material { reflect: 0.3, diffuse: 1.0, ..glow([1.0; 3]) };
     let scene = || {
-        one_ray().ambient([0.25; 3]).object("front", wall(-10.0), mirror.clone()).object(
-            "back",
-            wall(10.0),
-            mirror.clone(),
-        )
+        one_ray().ambient([0.25; 3]).object("front", wall(-10.0), mirror).object("back", wall(10.0), mirror)
     };
     let cut = |cutoff: f64| {
         let settings = Settings { width: 1, height: 1, max_depth: 9, cutoff, ..Settings::default() };
         render(&scene().build().unwrap(), &settings, &()).unwrap()
     };
-    let sum = |generations: i32| (0..generations).map(|k| 0.25 * 0.3_f64.powi(k)).sum::<f64>();
+    let sum = |generations: u64| (0..generations).fold(0.0, |rest, _| 0.25 + 0.3 * rest);
     assert_eq!(see(scene(), 9).picture, cut(0.0).picture);
     // Shares 0.3, 0.09, 0.027, 0.0081: all within the depth, three, two, none.
     for (cutoff, reflected) in [(0.0, 8), (0.02, 3), (0.0899, 2), (0.31, 0)] {
         let seen = cut(cutoff);
         assert_eq!(seen.stats.reflected_rays, reflected, "{cutoff}");
-        let expected = sum(reflected as i32 + 1);
+        let expected = sum(reflected + 1);
         assert!(color(&seen).iter().all(|c| (f64::from(*c) - expected).abs() < 1e-6), "{cutoff}");
     }
 }

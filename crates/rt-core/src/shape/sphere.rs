@@ -417,8 +417,9 @@ impl Primitive for Sphere {
         let discriminant = along * along - square * (far - near);
         // NaN with `slack`: then both comparisons are false.
         let safe = (exp2i(-31) + 0.0 * self.slack) * (square * (far + near));
-        // Where numbers underflow, T is not moderate; where they overflow, it is infinite or NaN.
-        if safe > exp2i(-900) {
+        // With the guard of the radius this keeps all products in the range of the exponents but those of a huge `w`, and
+        // those make T infinite or NaN.
+        if moderate(square) {
             if discriminant < -safe {
                 return None;
             }
