@@ -214,8 +214,11 @@ pub(crate) enum Rough {
 
 /// Whether a line certainly passes outside a sphere about zero: in plain `f64`, without scaling.
 ///
-/// `doubt` is 2^-50 of the radius, or NaN by [`range_guard`]. Errors as of `rough` in the module `sphere`: the
-/// square of the line's distance times `d.d` is known to `(8 u S r + 128 u^2 S^2) d.d`, with S = |w| + 2 r.
+/// The distance of the line from zero is `|w x d| / |d|`. With u = 2^-53, `w x d` errs by less than
+/// `2.9 u |w| |d| + u |w x d|`, the rounding of `w` included; hence its square, where it could be in doubt whether that exceeds
+/// `r^2 |d|^2`, by less than `(5.8 u r |w| + 11 u r^2 + 9 u^2 |w|^2) |d|^2`, less than `(8 u S r + 128 u^2 S^2) |d|^2` for
+/// S = |w| + 2 r, with the sum of the sizes of the coordinates for |w|. `doubt` is 8 u r = 2^-50 r, or NaN by
+/// [`range_guard`].
 #[inline(always)]
 pub(crate) fn passes_outside(radius: f64, doubt: f64, w: DVec3, d: DVec3) -> bool {
     let square = d.dot(d);

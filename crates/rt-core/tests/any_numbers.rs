@@ -102,7 +102,7 @@ fn shapes(kind: u32) {
         // The sheets of such a spindle are nearer to each other than a point is known: unsupported. A line through the
         // pinch of a horn meets it or misses it by its last bits, and so does the way back.
         if matches!(&shape, Shape::Torus(torus) if torus.major() < 1e-12 * torus.minor()
-            || (torus.major() - torus.minor()).abs() < 1e-6 * torus.minor())
+            || (torus.major() - torus.minor()).abs() < 1e-12 * torus.minor())
         {
             continue;
         }
@@ -165,11 +165,7 @@ fn any_quartic() {
         let mirrored = quartic([c[0], -c[1], c[2], -c[3], c[4]], Interval::LINE);
         let back: Vec<(f64, u32)> = mirrored.iter().rev().map(|root| (-root.x, root.multiplicity)).collect();
         let there: Vec<(f64, u32)> = found.iter().map(|root| (root.x, root.multiplicity)).collect();
-        // Two roots that both underflow to zero have no order that their numbers could tell.
-        let zeros = there.iter().filter(|root| root.0 == 0.0).count();
-        if zeros < 2 {
-            assert_eq!(there, back, "seed {seed}: {c:?}");
-        }
+        assert_eq!(there, back, "seed {seed}: {c:?}");
     }
 }
 

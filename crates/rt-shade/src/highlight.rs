@@ -1,7 +1,7 @@
 //! The power in Phong's highlight.
 
-/// Halves of exponents up to this are powers by multiplication: each of its `n` products errs by u = 2^-53 of itself,
-/// which is 2^-42 in all, nothing in a colour.
+/// Up to half of this exponents are taken by multiplication. The result errs by u = 2^-53 a factor, that is by 2^-43 at most,
+/// and by the square root's u: nothing in a colour.
 const MOST: f64 = 2048.0;
 
 /// `cosine^exponent` for `cosine > 0`, `exponent >= 0`.

@@ -407,7 +407,7 @@ impl Task for FindRescaled<'_> {
 impl Primitive for Sphere {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        // The sign of the quadratic equation's discriminant `D = (w.d)^2 - T'` tells most rays: with
+        // The sign of the discriminant `D = (w.d)^2 - |d|^2 (|w|^2 - r^2)` tells most rays: with
         // `T = |d|^2 (|w|^2 + r^2)` and u = 2^-53 it errs by less than 14 u T (3 u of `|d|^2`, 3 u of `|w|^2`, 2 u of each
         // coordinate of `w`, 8 u of the square, three operations). The crossings are those of `Approach`: for `D` above
         // 2^-31 T, half the chord squared times `|d|^2` is above 2^-31 (|w|^2 + r^2), more than 2^16 times its error there.

@@ -294,6 +294,7 @@ impl Line {
             if sign(a.1) != sign(b.1) && sign(a.1) != 0.0 && sign(b.1) != 0.0 {
                 return Err("an odd number of crossings is missing");
             }
+            // Halvings, so that one ray cannot take long; a piece that they do not settle is not judged.
             let mut budget = 2000;
             if !keeps_sign(&value, *a, *b, speed, doubt, model.size / (32.0 * speed), &mut budget) {
                 return Err("a pair of crossings is missing");

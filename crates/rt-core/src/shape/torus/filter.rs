@@ -394,7 +394,8 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     let between = |y: f64, near: f64, beyond: f64| (y - near) * (y - beyond) < 0.0;
     let mut y = if between(guess, near, beyond) { guess } else { 0.5 * far };
     // The guess is off by a part of the order of y, and each step squares that, unless an inflection lies between. Then
-    // Newton's method may first run far beyond and come back by a quarter of the way a step, or the bracket is halved.
+    // Newton's method may first run far beyond and come back by a quarter of the way a step, as for y^4: 120 such steps are
+    // 2^-49 of the way. A step of 2^-30 y leaves the square of that.
     for _ in 0..120 {
         let cubic = 4.0 * node.x + y;
         let value = node.value + y * y * (node.bend + y * cubic);
