@@ -8,6 +8,7 @@ use rt_core::shape::{Cuboid, Disk, Plane, Triangle};
 use rt_core::testing::Random;
 use rt_core::{Interval, Primitive, Ray};
 use std::hint::black_box;
+use std::time::Duration;
 
 /// As many rays as fit the first cache.
 const RAYS: usize = 256;
@@ -121,5 +122,12 @@ fn flat_shapes(c: &mut Criterion) {
     compare(c, "triangle", triangle, |r, i| textbook_triangle(p, q - p, s - p, r, i));
 }
 
-criterion_group!(benches, flat_shapes);
+/// Short runs, so that all benches together take minutes: ratios within one run settle in a second.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+}
+
+criterion_group! { name = benches; config = short(); targets = flat_shapes }
 criterion_main!(benches);

@@ -11,6 +11,7 @@ use rt_core::Interval;
 use rt_core::poly::{self, Method, Root};
 use serde_json::Value;
 use std::hint::black_box;
+use std::time::Duration;
 
 /// Coefficients in ascending powers and the real roots with their multiplicities, ascending.
 struct Case<const N: usize> {
@@ -148,5 +149,12 @@ fn lower(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, quartic, lower);
+/// Short runs, so that all benches together take minutes: ratios within one run settle in a second.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+}
+
+criterion_group! { name = benches; config = short(); targets = quartic, lower }
 criterion_main!(benches);

@@ -10,19 +10,23 @@
 //! passes the point but for roundings does so within 2^-50 S; what its hits err is less. An object at least
 //! 2^-26 S away from the point is then seen at most 2^-24 of its distance from where the ray's direction says; in
 //! coordinates on a face, which are at most 1, that is less than 2^-22. Every object is entered with a margin of 2^-16;
-//! one that is nearer, or unbounded, is entered everywhere. Rays from further away are not answered here.
+//! one that is nearer is entered everywhere. Rays from further away are not answered here.
+//!
+//! An object is entered where both its box and its [`Outline`] are seen. The corners of an outline err by less than 2^-50 of
+//! `2^-10 S` and of the object's size; with a depth of at least 2^-20 S on the face that is far less than the margin, and
+//! where a corner is less deep, the box alone counts.
 
+use super::outline::{Face, Outline};
 use super::query::{Nearest, Path, Query, Ruling, Screen};
 use super::{Found, Geometry, frame, is_legal};
-use crate::math::exp2i;
-use crate::scaled::largest;
-use crate::{Departure, Interval, Primitive, Ray};
+use crate::math::{exp2i, sqrt};
+use crate::scaled::{largest, moderate};
+use crate::{Departure, Interval, Primitive, Ray, Shape};
 use alloc::vec::Vec;
-use core::ops::ControlFlow;
 use glam::DVec3;
 
-/// Squares along the edge of a face: 1.4 degrees each.
-const EDGE: usize = 64;
+/// Squares along the edge of a face: 0.7 degrees each.
+const EDGE: usize = 128;
 
 /// The most objects: one bit each.
 const MOST_OBJECTS: usize = 64;
@@ -36,7 +40,9 @@ pub struct DirectionCube {
     point: DVec3,
     /// Rays that begin beyond this are left to the tree.
     reach: f64,
-    /// By object: a lower bound of the square of its distance.
+    /// The objects, nearest first: a set of them is one bit each in this order.
+    objects: Vec<u32>,
+    /// In the same order, a lower bound of the distance.
     distances: Vec<f64>,
     /// Face after face, row after row.
     squares: Vec<u64>,
@@ -71,8 +77,8 @@ impl DirectionCube {
         largest(ray.origin) <= self.reach
     }
 
-    /// Enters an object whose box, relative to the point, is this.
-    fn enter(&mut self, bit: u64, min: DVec3, max: DVec3) {
+    /// Enters an object whose box, relative to the point, is this; corners of its outline count from a depth of `least`.
+    fn enter(&mut self, bit: u64, min: DVec3, max: DVec3, outline: &Outline, least: f64) {
         for face in 0..6 {
             let axis = face / 2;
             let (near, far) = if face % 2 == 0 { (min[axis], max[axis]) } else { (-max[axis], -min[axis]) };
@@ -86,33 +92,48 @@ impl DirectionCube {
                     true if near > 0.0 => least / near,
                     true => f64::NEG_INFINITY,
                     false => least / far,
-                } - MARGIN;
+                };
                 let most = match most > 0.0 {
                     true if near > 0.0 => most / near,
                     true => f64::INFINITY,
                     false => most / far,
-                } + MARGIN;
-                if least > 1.0 || most < -1.0 {
-                    return 0..0;
-                }
-                let place = |x: f64| (((x + 1.0) * (0.5 * EDGE as f64)) as usize).min(EDGE - 1);
-                place(least)..place(most) + 1
+                };
+                squares(least, most)
             };
             let (columns, rows) = (span((axis + 1) % 3), span((axis + 2) % 3));
+            let silhouette = outline.on_face(Face(face), least);
             for row in rows {
+                let place = |i: usize| i as f64 * (2.0 / EDGE as f64) - 1.0;
+                let Some((least, most)) = silhouette.span(place(row) - MARGIN, place(row + 1) + MARGIN)
+                else {
+                    continue;
+                };
+                let seen = squares(least, most);
                 let start = (face * EDGE + row) * EDGE;
-                for square in &mut self.squares[start + columns.start..start + columns.end] {
-                    *square |= bit;
+                for column in columns.start.max(seen.start)..columns.end.min(seen.end) {
+                    if silhouette.meets(row, column, EDGE, MARGIN) {
+                        self.squares[start + column] |= bit;
+                    }
                 }
             }
         }
     }
 }
 
-/// The distance of a box from zero, squared.
-fn distance_squared(min: DVec3, max: DVec3) -> f64 {
+/// The squares from one coordinate on a face to another, with the margin.
+fn squares(least: f64, most: f64) -> core::ops::Range<usize> {
+    let (least, most) = (least - MARGIN, most + MARGIN);
+    if least > 1.0 || most < -1.0 {
+        return 0..0;
+    }
+    let place = |x: f64| (((x + 1.0) * (0.5 * EDGE as f64)) as usize).min(EDGE - 1);
+    place(least)..place(most) + 1
+}
+
+/// The distance of a box from zero.
+fn distance(min: DVec3, max: DVec3) -> f64 {
     let outside = min.max(-max).max(DVec3::ZERO);
-    outside.dot(outside)
+    sqrt(outside.dot(outside))
 }
 
 impl Geometry {
@@ -133,19 +154,42 @@ impl Geometry {
             return None;
         }
         let reach = extent * exp2i(10);
-        let squares = alloc::vec![0; 6 * EDGE * EDGE];
-        let mut cube = DirectionCube { point, reach, distances: Vec::new(), squares };
-        for (object, bounds) in boxes.iter().enumerate() {
-            let bit = 1_u64 << object;
-            let (min, max) = bounds.map_or((DVec3::ZERO, DVec3::ZERO), |b| (b.min - point, b.max - point));
-            let distance = distance_squared(min, max);
-            if distance > (reach * exp2i(-26)) * (reach * exp2i(-26)) {
-                cube.enter(bit, min, max);
-                cube.distances.push(distance * (1.0 - MARGIN));
-            } else {
+        // Nearer than this, an object is seen everywhere.
+        let close = reach * exp2i(-26);
+        let mut order: Vec<(f64, u32)> = Vec::new();
+        for (object, (shape, bounds)) in self.shapes.iter().zip(&boxes).enumerate() {
+            let distance = match (bounds, shape) {
+                (Some(b), _) => distance(b.min - point, b.max - point),
+                (None, Shape::Plane(plane)) => {
+                    // Its height errs by less than 2^-50 of the numbers it is made of.
+                    let anchor = plane.point() - point;
+                    let height = plane.normal().dot(anchor);
+                    if largest(anchor) <= reach { height.abs() } else { 0.0 }
+                }
+                _ => 0.0,
+            };
+            let distance = if distance > close { distance * (1.0 - MARGIN) } else { 0.0 };
+            order.push((distance, object as u32));
+        }
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut cube = DirectionCube {
+            point,
+            reach,
+            objects: order.iter().map(|&(_, object)| object).collect(),
+            distances: order.iter().map(|&(distance, _)| distance).collect(),
+            squares: alloc::vec![0; 6 * EDGE * EDGE],
+        };
+        let everywhere = DVec3::INFINITY;
+        for (place, (distance, object)) in order.into_iter().enumerate() {
+            let bit = 1_u64 << place;
+            if !(distance > 0.0) {
                 cube.squares.iter_mut().for_each(|square| *square |= bit);
-                cube.distances.push(0.0);
+                continue;
             }
+            let outline = Outline::of(&self.shapes[object as usize], point);
+            let (min, max) = boxes[object as usize]
+                .map_or((-everywhere, everywhere), |bounds| (bounds.min - point, bounds.max - point));
+            cube.enter(bit, min, max, &outline, reach * exp2i(-20));
         }
         Some(cube)
     }
@@ -162,7 +206,25 @@ impl Geometry {
             return None;
         }
         let mut nearest = Nearest::new(within, self.frame.window(ray), None);
-        let _ = self.ask_these(cube.seen(ray.direction), ray, &mut nearest);
+        // The length of the direction: the margin of the distances covers its rounding, unless squares leave their range.
+        let square = ray.direction.dot(ray.direction);
+        let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
+        let mut rest = cube.seen(ray.direction);
+        while rest != 0 {
+            let place = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let (Some(&object), Some(&distance)) = (cube.objects.get(place), cube.distances.get(place))
+            else {
+                break;
+            };
+            // The others are further still.
+            if distance > nearest.limit() * length {
+                break;
+            }
+            if let Some(shape) = self.shapes.get(object as usize) {
+                let _ = nearest.visit(ray, object, shape);
+            }
+        }
         match nearest.ruling() {
             Ruling::Clear(found) => found,
             Ruling::Contested(limit) => self.decide(ray, within, limit, None),
@@ -192,31 +254,25 @@ impl Geometry {
         if path.leave(self, &ray, from).is_break() {
             return true;
         }
-        let mut seen = cube.seen(-ray.direction);
         // Objects beyond the start are not in the way. The margin covers the roundings of the distance, as it is relative.
-        let length = ray.direction.dot(ray.direction);
-        let mut rest = seen;
+        let length = sqrt(ray.direction.dot(ray.direction));
+        let mut rest = cube.seen(-ray.direction);
         while rest != 0 {
-            let object = rest.trailing_zeros() as usize;
+            let place = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            if cube.distances.get(object).is_some_and(|&distance| distance > length) {
-                seen &= !(1 << object);
+            let (Some(&object), Some(&distance)) = (cube.objects.get(place), cube.distances.get(place))
+            else {
+                break;
+            };
+            if distance > length {
+                break;
+            }
+            if let Some(shape) = self.shapes.get(object as usize)
+                && path.visit(&ray, object, shape).is_break()
+            {
+                break;
             }
         }
-        let _ = self.ask_these(seen, &ray, &mut path);
         path.blocked
-    }
-
-    /// Shows the query these shapes, one bit each, until it breaks.
-    #[inline(always)]
-    fn ask_these<Q: Query>(&self, mut objects: u64, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
-        while objects != 0 {
-            let object = objects.trailing_zeros();
-            objects &= objects - 1;
-            if let Some(shape) = self.shapes.get(object as usize) {
-                query.visit(ray, object, shape)?;
-            }
-        }
-        ControlFlow::Continue(())
     }
 }

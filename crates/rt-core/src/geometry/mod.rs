@@ -16,6 +16,7 @@ mod batch;
 mod builder;
 mod cube;
 mod frame;
+mod outline;
 mod packet;
 mod query;
 mod store;
