@@ -5,6 +5,7 @@ use rt::rt_core::glam::DVec3;
 use rt::rt_core::shape::Sphere;
 use rt::rt_core::{Geometry, GeometryBuilder, Interval, Ray};
 use std::hint::black_box;
+use std::time::Duration;
 
 /// SplitMix64: 24-bit uniform numbers.
 struct Random(u64);
@@ -82,5 +83,12 @@ fn geometry(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, geometry);
+/// Short runs, so that all benches together take minutes: ratios within one run settle in a second.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+}
+
+criterion_group! { name = benches; config = short(); targets = geometry }
 criterion_main!(benches);

@@ -9,6 +9,7 @@ use rt::rt_core::poly::quartic;
 use rt::rt_core::shape::Torus;
 use rt::rt_core::{Hit, Interval, Primitive, Ray, Side};
 use std::hint::black_box;
+use std::time::Duration;
 
 const MAJOR: f64 = 1.3;
 const MINOR: f64 = 0.4;
@@ -167,5 +168,12 @@ fn torus(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, torus);
+/// Short runs, so that all benches together take minutes: ratios within one run settle in a second.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+}
+
+criterion_group! { name = benches; config = short(); targets = torus }
 criterion_main!(benches);

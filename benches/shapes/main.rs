@@ -12,6 +12,7 @@ use rt_core::glam::DVec3;
 use rt_core::shape::{Cone, Cylinder, Sphere};
 use rt_core::{Interval, Primitive, Ray};
 use std::hint::black_box;
+use std::time::Duration;
 
 mod families;
 
@@ -130,5 +131,12 @@ fn cone(c: &mut Criterion) {
     );
 }
 
-criterion_group!(benches, sphere, cylinder, cone);
+/// Short runs, so that all benches together take minutes: ratios within one run settle in a second.
+fn short() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+}
+
+criterion_group! { name = benches; config = short(); targets = sphere, cylinder, cone }
 criterion_main!(benches);
