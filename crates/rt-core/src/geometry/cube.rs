@@ -16,6 +16,7 @@
 //! `2^-10 S` and of the object's size; with a depth of at least 2^-20 S on the face that is far less than the margin, and
 //! where a corner is less deep, the box alone counts.
 
+use super::frame::Windows;
 use super::outline::{Face, Outline};
 use super::query::{Nearest, Path, Query, Ruling, Screen};
 use super::{Found, Geometry, frame, is_legal};
@@ -44,6 +45,10 @@ pub struct DirectionCube {
     objects: Vec<u32>,
     /// In the same order, a lower bound of the distance.
     distances: Vec<f64>,
+    /// By object: its bit.
+    bits: Vec<u64>,
+    /// The ties of rays that begin at the point.
+    windows: Windows,
     /// Face after face, row after row.
     squares: Vec<u64>,
 }
@@ -177,11 +182,14 @@ impl Geometry {
             reach,
             objects: order.iter().map(|&(_, object)| object).collect(),
             distances: order.iter().map(|&(distance, _)| distance).collect(),
+            bits: alloc::vec![0; order.len()],
+            windows: self.frame.windows(point),
             squares: alloc::vec![0; 6 * EDGE * EDGE],
         };
         let everywhere = DVec3::INFINITY;
         for (place, (distance, object)) in order.into_iter().enumerate() {
             let bit = 1_u64 << place;
+            cube.bits[object as usize] = bit;
             if !(distance > 0.0) {
                 cube.squares.iter_mut().for_each(|square| *square |= bit);
                 continue;
@@ -205,7 +213,7 @@ impl Geometry {
         if !is_legal(ray, within) {
             return None;
         }
-        let mut nearest = Nearest::new(within, self.frame.window(ray), None);
+        let mut nearest = Nearest::new(within, cube.windows.of(ray.direction), None);
         // The length of the direction: the margin of the distances covers its rounding, unless squares leave their range.
         let square = ray.direction.dot(ray.direction);
         let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
@@ -250,13 +258,17 @@ impl Geometry {
         if !is_legal(&ray, within) {
             return false;
         }
-        let mut path = Path { within, skip: Some(from.object), screens, each, blocked: false };
+        let mut path = Path { within, skip: None, screens, each, blocked: false };
         if path.leave(self, &ray, from).is_break() {
             return true;
         }
+        let left = cube.bits.get(from.object as usize).copied().unwrap_or(0);
+        let mut rest = cube.seen(-ray.direction) & !left;
+        if rest == 0 {
+            return false;
+        }
         // Objects beyond the start are not in the way. The margin covers the roundings of the distance, as it is relative.
         let length = sqrt(ray.direction.dot(ray.direction));
-        let mut rest = cube.seen(-ray.direction);
         while rest != 0 {
             let place = rest.trailing_zeros() as usize;
             rest &= rest - 1;

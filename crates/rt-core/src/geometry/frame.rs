@@ -7,12 +7,16 @@
 
 use crate::kernel::{at_least, round_down, round_up};
 use crate::math::{exp2i, exponent};
+use crate::scaled::largest;
 use crate::{Aabb, Interval, Ray};
 use alloc::vec::Vec;
 use glam::DVec3;
 
 /// The unit roundoff of `f64`.
 const U: f64 = exp2i(-53);
+
+/// The absolute part of a [`Window`] for an origin at zero, in kernel coordinates.
+const WINDOW: f64 = exp2i(-24);
 
 /// The map from the world to kernel coordinates.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,6 +70,29 @@ impl Window {
     }
 }
 
+/// The windows of all rays from one point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Windows {
+    exponent: i32,
+    /// The window of a direction of the scene's size; `None` where all are empty.
+    far: Option<f64>,
+}
+
+impl Windows {
+    /// The window of the ray with this direction.
+    #[inline(always)]
+    pub fn of(&self, direction: DVec3) -> Window {
+        let direction_exponent = exponent(largest(direction));
+        let power = direction_exponent - self.exponent;
+        match self.far {
+            Some(far) if direction_exponent >= -1000 && (-1000..=1000).contains(&power) => {
+                Window { absolute: far * exp2i(-power) }
+            }
+            _ => Window { absolute: 0.0 },
+        }
+    }
+}
+
 /// Whether box tests can hold this: finite, in order, and far from the limits of `f64`.
 pub(super) fn is_regular(bounds: &Aabb) -> bool {
     const MOST: f64 = exp2i(960);
@@ -107,17 +134,11 @@ impl Frame {
         )
     }
 
-    /// The window of ties that [`enter`](Frame::enter) gives for this ray, which must be valid.
-    #[inline(always)]
-    pub fn window(&self, ray: &Ray) -> Window {
-        let none = Window { absolute: 0.0 };
-        let direction_exponent = exponent(ray.direction.abs().max_element());
-        let power = direction_exponent - self.exponent;
-        if !self.inhabited || direction_exponent < -1000 || !(-1000..=1000).contains(&power) {
-            return none;
-        }
-        let far = ((ray.origin - self.center) * exp2i(-self.exponent)).abs().max_element();
-        if far < exp2i(60) { Window { absolute: (far + 1.0) * exp2i(-30) * exp2i(-power) } } else { none }
+    /// The windows of ties that [`enter`](Frame::enter) gives for valid rays from this point.
+    pub fn windows(&self, origin: DVec3) -> Windows {
+        let far = largest((origin - self.center) * exp2i(-self.exponent));
+        let far = if self.inhabited && far < exp2i(60) { Some((far + 1.0) * WINDOW) } else { None };
+        Windows { exponent: self.exponent, far }
     }
 
     /// The ray in kernel coordinates and the window of its ties; no ray when it misses the box of the scene.
@@ -143,7 +164,7 @@ impl Frame {
         if !(far < exp2i(60)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
-        let absolute = (far + 1.0) * exp2i(-24);
+        let absolute = (far + 1.0) * WINDOW;
         let window = Window { absolute: absolute * exp2i(-power) };
         // A raw `t` may exceed the interval's end by its error where the true one does not.
         let mut start = within.min * factor - absolute;
