@@ -232,6 +232,7 @@ fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
         set_level(level);
         compare_batches(&fast, &rays)?;
         compare_cubes(&fast, &plain, &rays)?;
+        let (mut leaving, mut leaving_within, mut departures) = (Vec::new(), Vec::new(), Vec::new());
         for (ray, within) in &rays {
             let found = plain.nearest(ray, *within);
             prop_assert_eq!(fast.nearest(ray, *within), found, "nearest {:?} {:?}", ray, within);
@@ -246,11 +247,19 @@ fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
                     let next = plain.nearest_leaving(&onward, within, &from);
                     prop_assert_eq!(fast.nearest_leaving(&onward, within, &from), next);
                     prop_assert_eq!(fast.occluded_leaving(&onward, within, &from), next.is_some());
+                    leaving.push(onward);
+                    leaving_within.push(within);
+                    departures.push(from);
                     let (onward, within) = from.through(ray.direction);
                     let next = plain.nearest_leaving(&onward, within, &from);
                     prop_assert_eq!(fast.nearest_leaving(&onward, within, &from), next);
                 }
             }
+        }
+        let mut occluded = vec![false; leaving.len()];
+        fast.occluded_leaving_many(&leaving, &leaving_within, &departures, &mut occluded);
+        for (i, from) in departures.iter().enumerate() {
+            prop_assert_eq!(occluded[i], plain.occluded_leaving(&leaving[i], leaving_within[i], from));
         }
     }
     Ok(())

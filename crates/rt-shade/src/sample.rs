@@ -2,9 +2,12 @@
 
 use crate::whitted::Tracer;
 use crate::{Antialias, Camera, Color, Region, Settings};
-use rt_core::{Interval, Ray};
+use rt_core::Interval;
 
-/// The colours of the pixels of `tile`, row by row. The eye rays of a row are cast together.
+/// The edge of a square of pixels whose rays are neighbours in a batch.
+const BLOCK: usize = 4;
+
+/// The colours of the pixels of `tile`, row by row. The rays of a few rows are cast together.
 pub(crate) fn tile(
     tracer: &mut Tracer,
     camera: &Camera,
@@ -22,29 +25,35 @@ pub(crate) fn tile(
     // Centres of n x n equal squares; the corner itself when corners are asked for.
     let step = 1.0 / f64::from(n);
     let first = if settings.corners { 0.0 } else { 0.5 * step };
-    let count = tile.width as usize * samples;
-    let mut rays: Vec<Ray> = Vec::with_capacity(count);
-    let within = vec![Interval::FORWARD; count];
-    let mut found = vec![None; count];
     out.clear();
-    for y in tile.y..tile.y + tile.height {
+    out.resize(tile.width as usize * tile.height as usize, [0.0; 3]);
+    let (mut rays, mut found, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+    // A few rows at a time, in squares of pixels: neighbours in the list go side by side.
+    for top in (0..tile.height).step_by(BLOCK) {
+        let rows = top..(top + BLOCK as u32).min(tile.height);
+        let places = |left: u32| {
+            let columns = left..(left + BLOCK as u32).min(tile.width);
+            rows.clone().flat_map(move |y| columns.clone().map(move |x| (x, y)))
+        };
+        let pixels = || (0..tile.width).step_by(BLOCK).flat_map(places);
         rays.clear();
-        for x in tile.x..tile.x + tile.width {
+        for (x, y) in pixels() {
             for j in 0..n {
                 for i in 0..n {
-                    let u = f64::from(x) + (first + f64::from(i) * step);
-                    let v = f64::from(y) + (first + f64::from(j) * step);
+                    let u = f64::from(tile.x + x) + (first + f64::from(i) * step);
+                    let v = f64::from(tile.y + y) + (first + f64::from(j) * step);
                     rays.push(camera.ray(u, v, width, height));
                 }
             }
         }
+        let within = vec![Interval::FORWARD; rays.len()];
+        found.clear();
+        found.resize(rays.len(), None);
         tracer.nearest_many(&rays, &within, &mut found);
-        for (rays, found) in rays.chunks_exact(samples).zip(found.chunks_exact(samples)) {
-            let mut sum = Color::BLACK;
-            for (ray, found) in rays.iter().zip(found) {
-                sum += tracer.seen_by_eye(ray, *found);
-            }
-            out.push((sum * share).to_f32());
+        tracer.all_seen_by_eye(&rays, &found, &mut colors);
+        for ((x, y), colors) in pixels().zip(colors.chunks_exact(samples)) {
+            let sum = colors.iter().fold(Color::BLACK, |sum, &color| sum + color);
+            out[y as usize * tile.width as usize + x as usize] = (sum * share).to_f32();
         }
     }
 }

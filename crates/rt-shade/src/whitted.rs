@@ -14,7 +14,7 @@ use crate::highlight::power;
 use crate::material::{Optics, Paint};
 use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
-use crate::{Color, Material, Scene, Settings, Stats};
+use crate::{Color, Light, Material, Scene, Settings, Stats};
 use rt_core::glam::DVec3;
 use rt_core::kernel::{Product, Task, run};
 use rt_core::{Departure, DirectionCube, Found, Interval, Ray, Side, Surface};
@@ -28,7 +28,53 @@ pub(crate) struct Tracer<'s> {
     media: Media,
     /// What a shadow ray crossed: kept to be multiplied in an order that does not depend on the search.
     filters: Vec<Color>,
+    /// By lamp.
+    queues: Vec<ShadowQueue>,
     pub stats: Stats,
+}
+
+/// Shadow rays of many points to one lamp, to be cast together.
+#[derive(Default)]
+struct ShadowQueue {
+    rays: Vec<Ray>,
+    within: Vec<Interval>,
+    from: Vec<Departure>,
+    blocked: Vec<bool>,
+    /// The number of the point that each ray leaves, and what the lamp adds to its colour.
+    gifts: Vec<(usize, Gift)>,
+}
+
+impl ShadowQueue {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.within.clear();
+        self.from.clear();
+        self.blocked.clear();
+        self.gifts.clear();
+    }
+}
+
+/// The light of one lamp at a point, before it is known whether anything is in the way.
+struct Arriving {
+    to_light: DVec3,
+    cosine: f64,
+    color: Color,
+}
+
+/// What a lamp adds to the colour of a point: by its body, and by its gloss where it has one.
+#[derive(Clone, Copy)]
+struct Gift {
+    body: Color,
+    gloss: Option<Color>,
+}
+
+impl Gift {
+    fn add_to(&self, sum: &mut Color) {
+        *sum += self.body;
+        if let Some(gloss) = self.gloss {
+            *sum += gloss;
+        }
+    }
 }
 
 /// A point that a ray hit, with all that spawned rays need.
@@ -61,6 +107,46 @@ impl Task for Shade<'_, '_> {
     }
 }
 
+/// The first half of a colour: all but the light of the lamps and what rays bring that go on.
+struct Enqueue<'a, 's> {
+    tracer: &'a Tracer<'s>,
+    ray: &'a Ray,
+    found: Found,
+    number: usize,
+    queues: &'a mut [ShadowQueue],
+}
+
+impl<'s> Task for Enqueue<'_, 's> {
+    type Output = (Color, Vertex<'s>);
+    #[inline(always)]
+    fn run<P: Product>(self) -> Self::Output {
+        let vertex = self.tracer.vertex(self.ray, self.found);
+        (self.tracer.enqueue(&vertex, self.number, self.queues), vertex)
+    }
+}
+
+/// The second: what rays bring that go on.
+struct Spawn<'a, 's> {
+    tracer: &'a mut Tracer<'s>,
+    local: Color,
+    vertex: &'a Vertex<'s>,
+}
+
+impl Task for Spawn<'_, '_> {
+    type Output = Color;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Color {
+        self.tracer.with_spawned(self.local, self.vertex, 1, 1.0)
+    }
+}
+
+/// The ray from a surface to a lamp, at which it ends.
+#[inline(always)]
+fn shadow_ray(from: &Departure, lamp: DVec3) -> (Ray, Interval) {
+    let start = from.ray(DVec3::ZERO).0.origin;
+    (Ray::new(start, lamp - start), Interval::new(0.0, 1.0))
+}
+
 impl<'s> Tracer<'s> {
     pub fn new(scene: &'s Scene, settings: &Settings) -> Self {
         let mut media = Media::default();
@@ -72,6 +158,7 @@ impl<'s> Tracer<'s> {
             cutoff: settings.cutoff,
             media,
             filters: Vec::new(),
+            queues: scene.lights.iter().map(|_| ShadowQueue::default()).collect(),
             stats: Stats::default(),
         }
     }
@@ -118,6 +205,59 @@ impl<'s> Tracer<'s> {
 
     #[inline(always)]
     fn shade_here(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
+        let vertex = self.vertex(ray, found);
+        let local = self.local(&vertex);
+        self.with_spawned(local, &vertex, depth, weight)
+    }
+
+    /// The colours that rays from the eye see, whose nearest hits are known: the same as
+    /// [`seen_by_eye`](Tracer::seen_by_eye) for each, with the shadow rays of the first hits cast together.
+    pub fn all_seen_by_eye(&mut self, rays: &[Ray], found: &[Option<Found>], colors: &mut Vec<Color>) {
+        colors.clear();
+        // Lamps that hold what they see ask for no search, and what is behind glass is searched otherwise.
+        let searched = self.scene.all_opaque && self.scene.seen_by_lamp.iter().any(Option::is_none);
+        if !(searched && self.shadows) {
+            colors.extend(rays.iter().zip(found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
+            return;
+        }
+        let mut queues = core::mem::take(&mut self.queues);
+        let mut spawning = Vec::new();
+        for (number, (ray, found)) in rays.iter().zip(found).enumerate() {
+            self.stats.eye_rays += 1;
+            let Some(found) = *found else {
+                colors.push(self.scene.background);
+                continue;
+            };
+            self.stats.eye_hits += 1;
+            let (color, vertex) = run(Enqueue { tracer: self, ray, found, number, queues: &mut queues });
+            colors.push(color);
+            if self.spawns(&vertex, 1) {
+                spawning.push((number, vertex));
+            }
+        }
+        for queue in &mut queues {
+            self.stats.shadow_rays += queue.rays.len() as u64;
+            queue.blocked.resize(queue.rays.len(), false);
+            let ShadowQueue { rays, within, from, blocked, gifts } = queue;
+            self.scene.geometry.occluded_leaving_many(rays, within, from, blocked);
+            for ((number, gift), blocked) in gifts.iter().zip(blocked) {
+                if *blocked {
+                    self.stats.shadow_hits += 1;
+                } else if let Some(color) = colors.get_mut(*number) {
+                    gift.add_to(color);
+                }
+            }
+            queue.clear();
+        }
+        self.queues = queues;
+        for (number, vertex) in spawning {
+            colors[number] = run(Spawn { tracer: self, local: colors[number], vertex: &vertex });
+        }
+    }
+
+    /// The record of a hit.
+    #[inline(always)]
+    fn vertex(&self, ray: &Ray, found: Found) -> Vertex<'s> {
         let scene = self.scene;
         let surface = scene.geometry.surface(ray, found);
         let direction = ray.direction.normalize();
@@ -126,28 +266,35 @@ impl<'s> Tracer<'s> {
         } else {
             surface.shading_normal
         };
-        let vertex = Vertex {
+        Vertex {
             found,
             direction,
             normal: facing,
             side: Side::of_arrival(direction, surface.normal),
             material: &scene.materials[scene.objects[found.object as usize].material as usize],
             surface,
-        };
-        let local = self.local(&vertex);
-        if depth >= self.max_depth || vertex.material.is_matt() {
-            return local;
         }
-        local + self.spawned(&vertex, depth, weight)
     }
 
-    /// Ambient light and the light of the lamps.
+    /// Whether rays go on from a point.
     #[inline(always)]
-    fn local(&mut self, v: &Vertex) -> Color {
+    fn spawns(&self, v: &Vertex, depth: u32) -> bool {
+        depth < self.max_depth && !v.material.is_matt()
+    }
+
+    /// The colour of a point whose own is known.
+    #[inline(always)]
+    fn with_spawned(&mut self, local: Color, v: &Vertex, depth: u32, weight: f64) -> Color {
+        if self.spawns(v, depth) { local + self.spawned(v, depth, weight) } else { local }
+    }
+
+    /// The colour of the surface itself, before it is lit; `None` where it shows none.
+    #[inline(always)]
+    fn body(&self, v: &Vertex) -> Option<Color> {
         let scene = self.scene;
         let material = v.material;
         if material.diffuse == 0.0 && material.specular == 0.0 {
-            return Color::BLACK;
+            return None;
         }
         let paint = match material.paint {
             Paint::Color(color) => color,
@@ -157,38 +304,77 @@ impl<'s> Tracer<'s> {
                 scene.textures[texture as usize].color(&v.surface, mapping, object)
             }
         };
-        let body = paint * material.diffuse;
+        Some(paint * material.diffuse)
+    }
+
+    /// The light of a lamp at a point; `None` where it gives none, whatever is in the way.
+    #[inline(always)]
+    fn arriving(&self, v: &Vertex, light: &Light) -> Option<Arriving> {
+        let to_light = light.position() - v.surface.point;
+        let distance = to_light.length();
+        let to_light = to_light / distance;
+        let cosine = v.normal.dot(to_light);
+        // Not `<=`: a lamp at the very point has no direction, NaN, and gives nothing.
+        if !(cosine > 0.0) {
+            return None;
+        }
+        let share = light.share(-to_light);
+        if share == 0.0 {
+            return None;
+        }
+        let color = light.color() * (share * light.attenuation().at(distance));
+        Some(Arriving { to_light, cosine, color })
+    }
+
+    /// What the light adds.
+    #[inline(always)]
+    fn gift(&self, v: &Vertex, body: Color, arriving: &Arriving) -> Gift {
+        let Arriving { to_light, cosine, color } = *arriving;
+        let mut gift = Gift { body: color * body * cosine, gloss: None };
+        if v.material.specular > 0.0 {
+            let along = (v.normal * (2.0 * cosine) - to_light).dot(-v.direction);
+            if along > 0.0 {
+                gift.gloss = Some(color * (v.material.specular * power(along, v.material.shininess)));
+            }
+        }
+        gift
+    }
+
+    /// Ambient light and the light of the lamps.
+    #[inline(always)]
+    fn local(&mut self, v: &Vertex) -> Color {
+        let scene = self.scene;
+        let Some(body) = self.body(v) else { return Color::BLACK };
         let mut sum = scene.ambient * body;
         let from = v.surface.departure(v.found.object, v.found.hit, v.side);
         for (light, cube) in scene.lights.iter().zip(&scene.seen_by_lamp) {
-            let to_light = light.position() - v.surface.point;
-            let distance = to_light.length();
-            let to_light = to_light / distance;
-            let cosine = v.normal.dot(to_light);
-            // Not `<=`: a lamp at the very point has no direction, NaN, and gives nothing.
-            if !(cosine > 0.0) {
-                continue;
-            }
-            let share = light.share(-to_light);
-            if share == 0.0 {
-                continue;
-            }
-            let mut arriving = light.color() * (share * light.attenuation().at(distance));
+            let Some(mut arriving) = self.arriving(v, light) else { continue };
             if self.shadows {
                 match self.visibility(&from, light.position(), cube.as_ref()) {
                     None => continue,
-                    Some(visible) => arriving *= visible,
+                    Some(visible) => arriving.color *= visible,
                 }
             }
-            sum += arriving * body * cosine;
-            if material.specular > 0.0 {
-                let along = (v.normal * (2.0 * cosine) - to_light).dot(-v.direction);
-                if along > 0.0 {
-                    sum += arriving * (material.specular * power(along, material.shininess));
-                }
-            }
+            self.gift(v, body, &arriving).add_to(&mut sum);
         }
         sum
+    }
+
+    /// The same with the light of the lamps still to come.
+    #[inline(always)]
+    fn enqueue(&self, v: &Vertex, number: usize, queues: &mut [ShadowQueue]) -> Color {
+        let scene = self.scene;
+        let Some(body) = self.body(v) else { return Color::BLACK };
+        let from = v.surface.departure(v.found.object, v.found.hit, v.side);
+        for (light, queue) in scene.lights.iter().zip(queues) {
+            let Some(arriving) = self.arriving(v, light) else { continue };
+            let (ray, within) = shadow_ray(&from, light.position());
+            queue.rays.push(ray);
+            queue.within.push(within);
+            queue.from.push(from);
+            queue.gifts.push((number, self.gift(v, body, &arriving)));
+        }
+        scene.ambient * body
     }
 
     /// What a straight ray to a lamp leaves of its light; `None` when something opaque is in the way.
@@ -204,8 +390,7 @@ impl<'s> Tracer<'s> {
         let blocked = match cube {
             Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
             None => {
-                let start = from.ray(DVec3::ZERO).0.origin;
-                let (ray, within) = (Ray::new(start, lamp - start), Interval::new(0.0, 1.0));
+                let (ray, within) = shadow_ray(from, lamp);
                 match scene.all_opaque {
                     true => scene.geometry.occluded_leaving(&ray, within, from),
                     false => scene.geometry.blocked(&ray, within, Some(from), &scene.screens, &mut each),

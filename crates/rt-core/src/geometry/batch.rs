@@ -5,9 +5,10 @@ use super::frame::{LocalRay, Window};
 use super::packet::{PACKET, Packet};
 use super::query::{Any, Nearest, Query, Ruling};
 use super::stream::interleave;
-use super::{FindAny, FindNearest, Found, Geometry, is_legal};
+use super::{FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
-use crate::{Interval, Ray};
+use crate::{Departure, Interval, Primitive, Ray};
+use alloc::vec::Vec;
 
 /// The rays that are looked at together: those without company are collected over a block.
 const BLOCK: usize = 1024;
@@ -22,22 +23,29 @@ const CACHE: usize = 1 << 20;
 trait Request {
     type Query: Query;
     type Answer;
-    fn query(within: Interval, window: Window) -> Self::Query;
+    fn query(within: Interval, window: Window, skip: Option<u32>) -> Self::Query;
     /// The answer when the ray cannot hit anything.
     fn nothing() -> Self::Answer;
     fn answer(geometry: &Geometry, ray: &Ray, query: &Self::Query) -> Self::Answer;
     /// The answer for a ray on its own.
-    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Self::Answer;
+    fn one<L: Lanes>(
+        lanes: L,
+        geometry: &Geometry,
+        ray: &Ray,
+        within: Interval,
+        skip: Option<u32>,
+    ) -> Self::Answer;
 }
 
+/// Nothing is skipped.
 struct NearestRequest;
 
 impl Request for NearestRequest {
     type Query = Nearest;
     type Answer = Option<Found>;
     #[inline(always)]
-    fn query(within: Interval, window: Window) -> Nearest {
-        Nearest::new(within, window, None)
+    fn query(within: Interval, window: Window, skip: Option<u32>) -> Nearest {
+        Nearest::new(within, window, skip)
     }
     #[inline(always)]
     fn nothing() -> Option<Found> {
@@ -51,7 +59,13 @@ impl Request for NearestRequest {
         }
     }
     #[inline(always)]
-    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> Option<Found> {
+    fn one<L: Lanes>(
+        lanes: L,
+        geometry: &Geometry,
+        ray: &Ray,
+        within: Interval,
+        _: Option<u32>,
+    ) -> Option<Found> {
         FindNearest { geometry, ray, within, from: None }.run(lanes)
     }
 }
@@ -62,8 +76,8 @@ impl Request for AnyRequest {
     type Query = Any;
     type Answer = bool;
     #[inline(always)]
-    fn query(within: Interval, _: Window) -> Any {
-        Any::new(within, None)
+    fn query(within: Interval, _: Window, skip: Option<u32>) -> Any {
+        Any::new(within, skip)
     }
     #[inline(always)]
     fn nothing() -> bool {
@@ -74,8 +88,8 @@ impl Request for AnyRequest {
         query.found
     }
     #[inline(always)]
-    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval) -> bool {
-        FindAny { geometry, ray, within, from: None }.run(lanes)
+    fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval, skip: Option<u32>) -> bool {
+        is_legal(ray, within) && geometry.any(lanes, ray, within, skip)
     }
 }
 
@@ -83,6 +97,8 @@ struct Batch<'a, R: Request> {
     geometry: &'a Geometry,
     rays: &'a [Ray],
     within: &'a [Interval],
+    /// The object that each ray passes over; empty where none does.
+    skip: &'a [u32],
     answers: &'a mut [R::Answer],
 }
 
@@ -90,11 +106,11 @@ impl<R: Request> Vectorized for Batch<'_, R> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Batch { geometry, rays, within, answers } = self;
-        for ((rays, within), answers) in
-            rays.chunks(BLOCK).zip(within.chunks(BLOCK)).zip(answers.chunks_mut(BLOCK))
-        {
-            block::<R, L>(lanes, geometry, rays, within, answers);
+        let Batch { geometry, rays, within, skip, answers } = self;
+        let blocks = rays.chunks(BLOCK).zip(within.chunks(BLOCK)).zip(answers.chunks_mut(BLOCK));
+        for (number, ((rays, within), answers)) in blocks.enumerate() {
+            let skip = skip.get(number * BLOCK..).unwrap_or(&[]);
+            block::<R, L>(lanes, geometry, rays, within, skip, answers);
         }
     }
 }
@@ -106,6 +122,7 @@ fn block<R: Request, L: Lanes>(
     geometry: &Geometry,
     rays: &[Ray],
     within: &[Interval],
+    skip: &[u32],
     answers: &mut [R::Answer],
 ) {
     let count = rays.len().min(within.len()).min(answers.len());
@@ -115,7 +132,7 @@ fn block<R: Request, L: Lanes>(
     let mut packet = Packet {
         rays,
         locals: [LocalRay::EVERYWHERE; PACKET],
-        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default())),
+        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
         active: 0,
     };
     for first in (0..count).step_by(PACKET) {
@@ -137,7 +154,7 @@ fn block<R: Request, L: Lanes>(
             }
             let (local, window) = geometry.frame.enter(ray, within);
             let query = &mut packet.queries[i];
-            *query = R::query(within, window);
+            *query = R::query(within, window, skip.get(number).copied());
             let seen = geometry.ask_apart(ray, query).is_break();
             match local {
                 Some(local) if !seen => {
@@ -165,7 +182,8 @@ fn block<R: Request, L: Lanes>(
     let mut numbers = alone[..alone_count].iter().map(|&number| usize::from(number));
     if geometry.tree.roots != 1 || geometry.tree.bytes() <= CACHE {
         for number in numbers {
-            answers[number] = R::one(lanes, geometry, &rays[number], within[number]);
+            answers[number] =
+                R::one(lanes, geometry, &rays[number], within[number], skip.get(number).copied());
         }
         return;
     }
@@ -177,7 +195,7 @@ fn block<R: Request, L: Lanes>(
             let mut nothing = R::nothing();
             if is_legal(ray, within) {
                 let (local, window) = geometry.frame.enter(ray, within);
-                let mut query = R::query(within, window);
+                let mut query = R::query(within, window, skip.get(number).copied());
                 let seen = geometry.ask_apart(ray, &mut query).is_break();
                 match local {
                     Some(local) if !seen => return Some((number, ray, local, query)),
@@ -218,7 +236,7 @@ impl Geometry {
             }
             return;
         }
-        vectorize(Batch::<NearestRequest> { geometry: self, rays, within, answers: found });
+        vectorize(Batch::<NearestRequest> { geometry: self, rays, within, skip: &[], answers: found });
     }
 
     /// Whether anything lies inside the interval of each ray: the same as [`occluded`](Geometry::occluded) for each,
@@ -230,6 +248,44 @@ impl Geometry {
             }
             return;
         }
-        vectorize(Batch::<AnyRequest> { geometry: self, rays, within, answers: occluded });
+        vectorize(Batch::<AnyRequest> { geometry: self, rays, within, skip: &[], answers: occluded });
+    }
+
+    /// Whether anything lies inside the interval of each ray, for rays that leave surfaces: the same as
+    /// [`occluded_leaving`](Geometry::occluded_leaving) for each, faster. See [`nearest_many`](Geometry::nearest_many).
+    pub fn occluded_leaving_many(
+        &self,
+        rays: &[Ray],
+        within: &[Interval],
+        from: &[Departure],
+        occluded: &mut [bool],
+    ) {
+        // The shapes that are left, first: what they block needs no search.
+        let (mut free, mut free_within) = (Vec::with_capacity(rays.len()), Vec::with_capacity(rays.len()));
+        let (mut skip, mut numbers) = (Vec::with_capacity(rays.len()), Vec::with_capacity(rays.len()));
+        let all = rays.iter().zip(within).zip(from).zip(occluded.iter_mut());
+        for (number, (((ray, within), from), occluded)) in all.enumerate() {
+            *occluded = is_legal(ray, *within)
+                && self
+                    .departed(Some(from))
+                    .is_some_and(|(from, shape)| shape.hit_leaving(ray, *within, from).is_some());
+            if !*occluded {
+                free.push(*ray);
+                free_within.push(*within);
+                skip.push(from.object);
+                numbers.push(number);
+            }
+        }
+        let mut answers = alloc::vec![false; free.len()];
+        vectorize(Batch::<AnyRequest> {
+            geometry: self,
+            rays: &free,
+            within: &free_within,
+            skip: &skip,
+            answers: &mut answers,
+        });
+        for (number, answer) in numbers.into_iter().zip(answers) {
+            occluded[number] = answer;
+        }
     }
 }

@@ -230,6 +230,15 @@ impl Geometry {
         }
     }
 
+    /// Whether a ray, which must be legal, hits any object but one.
+    #[inline(always)]
+    fn any<L: Lanes>(&self, lanes: L, ray: &Ray, within: Interval, skip: Option<u32>) -> bool {
+        let mut any = Any::new(within, skip);
+        let local = self.frame.enter(ray, within).0;
+        let _ = self.ask(lanes, ray, local.as_ref(), &mut any);
+        any.found
+    }
+
     /// Shows the query the shapes outside the tree.
     #[inline(always)]
     fn ask_apart<Q: Query>(&self, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
@@ -328,10 +337,7 @@ impl Vectorized for FindAny<'_> {
         {
             return true;
         }
-        let mut any = Any::new(within, from.map(|from| from.object));
-        let local = geometry.frame.enter(ray, within).0;
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut any);
-        any.found
+        geometry.any(lanes, ray, within, from.map(|from| from.object))
     }
 }
 
