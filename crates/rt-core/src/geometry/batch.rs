@@ -1,8 +1,8 @@
 //! Many rays at once: packets of those that go side by side, the others interleaved. The answers are the same bits as
 //! one by one: the ways differ only in which boxes they pass over.
 
-use super::frame::{LocalRay, Window};
-use super::packet::{PACKET, Packet};
+use super::frame::{PACKET, Side, Window};
+use super::packet::Packet;
 use super::query::{Any, Nearest, Query, Ruling};
 use super::stream::interleave;
 use super::{FindAny, FindNearest, Found, Geometry, is_legal};
@@ -114,7 +114,7 @@ fn block<R: Request, L: Lanes>(
     let mut alone_count = 0;
     let mut packet = Packet {
         rays,
-        locals: [LocalRay::EVERYWHERE; PACKET],
+        side: Side::EMPTY,
         queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default())),
         active: 0,
     };
@@ -129,34 +129,15 @@ fn block<R: Request, L: Lanes>(
             }
             continue;
         }
-        for (i, number) in members.clone().enumerate() {
-            let (ray, within) = (&rays[number], within[number]);
-            answers[number] = R::nothing();
-            if !is_legal(ray, within) {
-                continue;
-            }
-            let (local, window) = geometry.frame.enter(ray, within);
-            let query = &mut packet.queries[i];
-            *query = R::query(within, window);
-            let seen = geometry.ask_apart(ray, query).is_break();
-            match local {
-                Some(local) if !seen => {
-                    packet.locals[i] = local;
-                    packet.active |= 1 << i;
-                }
-                _ => answers[number] = R::answer(geometry, ray, query),
-            }
-        }
-        let active = packet.active;
-        let places = packet.places();
-        let beam = places.as_ref().and_then(|places| places.beam(geometry.tree.box_size));
-        if let (Some(places), Some(beam)) = (places, beam) {
-            packet.traverse(lanes, geometry, &places, &beam);
+        enter::<R, L>(lanes, geometry, &mut packet, &within[members.clone()], &mut answers[members.clone()]);
+        if let Some(bundle) = packet.bundle(lanes, geometry.tree.box_size) {
+            let active = packet.active;
+            packet.traverse(lanes, geometry, &bundle);
             for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
             }
         } else {
-            for (_, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+            for (_, number) in members.enumerate().filter(|(i, _)| packet.active >> i & 1 == 1) {
                 alone[alone_count] = number as u16;
                 alone_count += 1;
             }
@@ -191,6 +172,50 @@ fn block<R: Request, L: Lanes>(
     interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
         answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
     });
+}
+
+/// Makes the rays of a packet and their queries ready; answers those that cannot meet the tree.
+#[inline(always)]
+fn enter<R: Request, L: Lanes>(
+    lanes: L,
+    geometry: &Geometry,
+    packet: &mut Packet<R::Query>,
+    within: &[Interval],
+    answers: &mut [R::Answer],
+) {
+    if geometry.apart.is_empty()
+        && let (Ok(rays), Ok(within)) = (packet.rays.try_into(), within.try_into())
+        && geometry.frame.enter_together(lanes, rays, within, &mut packet.side)
+    {
+        packet.active = (1 << PACKET) - 1;
+        for i in 0..PACKET {
+            packet.queries[i] = R::query(within[i], Window { absolute: packet.side.window[i] });
+        }
+        return;
+    }
+    packet.side.error = 0.0;
+    let rays = packet.rays.iter().zip(within).zip(answers);
+    for (i, ((ray, within), answer)) in rays.enumerate() {
+        *answer = R::nothing();
+        if !is_legal(ray, *within) {
+            continue;
+        }
+        let (local, window) = geometry.frame.enter(ray, *within);
+        let query = &mut packet.queries[i];
+        *query = R::query(*within, window);
+        let seen = geometry.ask_apart(ray, query).is_break();
+        match local {
+            Some(local) if !seen => {
+                packet.side.set(i, &local, query.limit());
+                packet.active |= 1 << i;
+            }
+            _ => *answer = R::answer(geometry, ray, query),
+        }
+    }
+    let any = packet.active.trailing_zeros() as usize;
+    for i in (0..PACKET).filter(|i| packet.active >> i & 1 == 0) {
+        packet.side.repeat(i, any);
+    }
 }
 
 /// A glance whether rays may make a beam: whether the first, the middle and the last have much the same direction.

@@ -297,7 +297,7 @@ impl Plane {
 /// The nodes that so many items fill: parts that fill theirs make a smaller tree.
 #[inline(always)]
 fn nodes_for(items: u32) -> f32 {
-    items.div_ceil(8) as f32
+    items as f32
 }
 
 /// The plane of least cost, if the centres differ.

@@ -5,7 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
-use crate::kernel::{at_least, round_down, round_up};
+use crate::kernel::{Lanes, at_least, round_down, round_up};
 use crate::math::{exp2i, exponent};
 use crate::{Aabb, Interval, Ray};
 use alloc::vec::Vec;
@@ -54,7 +54,7 @@ impl LocalRay {
 /// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
-    absolute: f64,
+    pub absolute: f64,
 }
 
 impl Window {
@@ -176,6 +176,149 @@ impl Frame {
             shift: absolute - start,
         };
         (Some(local), window)
+    }
+}
+
+/// The rays that go side by side.
+pub(super) const PACKET: usize = 16;
+
+/// Rays in kernel coordinates, by axis, in `f32`: for culling.
+#[derive(Clone, Debug)]
+pub(super) struct Side {
+    /// Eight each. Known within `error` and the rounding to nearest.
+    pub origin: [[[f32; 8]; 3]; 2],
+    /// Rounded to nearest.
+    pub direction: [[[f32; 8]; 3]; 2],
+    /// Where each ray's interval ends: an upper bound.
+    pub limit: [[f32; 8]; 2],
+    /// As in [`LocalRay`].
+    pub factor: [f64; PACKET],
+    pub shift: [f64; PACKET],
+    /// The windows of ties.
+    pub window: [f64; PACKET],
+    /// An error radius for all.
+    pub error: f64,
+}
+
+impl Side {
+    pub const EMPTY: Side = Side {
+        origin: [[[0.0; 8]; 3]; 2],
+        direction: [[[0.0; 8]; 3]; 2],
+        limit: [[0.0; 8]; 2],
+        factor: [0.0; PACKET],
+        shift: [0.0; PACKET],
+        window: [0.0; PACKET],
+        error: 0.0,
+    };
+
+    /// Puts a ray into its place.
+    pub fn set(&mut self, place: usize, ray: &LocalRay, end: f64) {
+        let (half, lane) = (place / 8 % 2, place % 8);
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        for axis in 0..3 {
+            self.origin[half][axis][lane] = o[axis] as f32;
+            self.direction[half][axis][lane] = d[axis] as f32;
+        }
+        self.limit[half][lane] = ray.limit(end);
+        self.factor[place % PACKET] = ray.factor;
+        self.shift[place % PACKET] = ray.shift;
+        let error = ray.error.x + ray.error.y + ray.error.z;
+        self.error = if error > self.error { error } else { self.error };
+    }
+
+    /// Makes one place repeat another, but for its end, which comes before its start.
+    pub fn repeat(&mut self, place: usize, other: usize) {
+        let (half, lane) = (place / 8 % 2, place % 8);
+        for axis in 0..3 {
+            self.origin[half][axis][lane] = self.origin[other / 8 % 2][axis][other % 8];
+            self.direction[half][axis][lane] = self.direction[other / 8 % 2][axis][other % 8];
+        }
+        self.limit[half][lane] = f32::NEG_INFINITY;
+    }
+
+    /// [`LocalRay::limit`] of this ray.
+    #[inline(always)]
+    pub fn limit_of(&self, place: usize, t: f64) -> f32 {
+        let place = place % PACKET;
+        at_least(t * self.factor[place] + self.shift[place])
+    }
+}
+
+impl Frame {
+    /// [`enter`](Frame::enter) for a whole packet, where that is simple: all rays legal, and near the scene. Whether it
+    /// was.
+    #[inline(always)]
+    pub fn enter_together<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray; PACKET],
+        within: &[Interval; PACKET],
+        side: &mut Side,
+    ) -> bool {
+        let center = [self.center.x, self.center.y, self.center.z];
+        let scale = lanes.splat4(exp2i(-self.exponent));
+        let (small, large) = (lanes.splat4(exp2i(-1000)), lanes.splat4(exp2i(1000)));
+        let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(exp2i(-24)));
+        let mut fine = 15;
+        for four in 0..4 {
+            let (half, lane) = (four / 2, four % 2 * 4);
+            let [a, b, c, e] = [&rays[4 * four], &rays[4 * four + 1], &rays[4 * four + 2], &rays[4 * four + 3]];
+            let world = [
+                lanes.load4([a.origin.x, b.origin.x, c.origin.x, e.origin.x]),
+                lanes.load4([a.origin.y, b.origin.y, c.origin.y, e.origin.y]),
+                lanes.load4([a.origin.z, b.origin.z, c.origin.z, e.origin.z]),
+            ];
+            let d = [
+                lanes.load4([a.direction.x, b.direction.x, c.direction.x, e.direction.x]),
+                lanes.load4([a.direction.y, b.direction.y, c.direction.y, e.direction.y]),
+                lanes.load4([a.direction.z, b.direction.z, c.direction.z, e.direction.z]),
+            ];
+            let [a, b, c, e] =
+                [&within[4 * four], &within[4 * four + 1], &within[4 * four + 2], &within[4 * four + 3]];
+            let (min, max) =
+                (lanes.load4([a.min, b.min, c.min, e.min]), lanes.load4([a.max, b.max, c.max, e.max]));
+            // Zero times a number is zero, unless the number is infinite or NaN.
+            let mut nothing = zero;
+            let (mut largest, mut far) = (zero, zero);
+            let mut o = world;
+            for k in 0..3 {
+                nothing = lanes.add4(nothing, lanes.mul4(lanes.add4(world[k], d[k]), zero));
+                o[k] = lanes.mul4(lanes.sub4(world[k], lanes.splat4(center[k])), scale);
+                largest = lanes.max4(lanes.abs4(d[k]), largest);
+                far = lanes.max4(lanes.abs4(o[k]), far);
+            }
+            let power = lanes.binade4(largest);
+            let shrink = lanes.div4(one, power);
+            let factor = lanes.mul4(power, scale);
+            let absolute = lanes.mul4(lanes.add4(far, one), unit);
+            let start = lanes.sub4(lanes.mul4(min, factor), absolute);
+            let reach = lanes.add4(lanes.add4(lanes.abs4(start), lanes.abs4(start)), far);
+            fine &= lanes.le4(nothing, zero)
+                & lanes.le4(small, power)
+                & lanes.le4(power, large)
+                & lanes.le4(small, factor)
+                & lanes.le4(factor, large)
+                & lanes.le4(reach, lanes.splat4(8.0))
+                & lanes.lt4(min, max);
+            let shift = lanes.sub4(absolute, start);
+            // As `at_least`.
+            let limit = lanes.add4(lanes.mul4(max, factor), shift);
+            let limit = lanes.add4(limit, lanes.mul4(lanes.abs4(limit), lanes.splat4(exp2i(-23))));
+            for k in 0..3 {
+                let d = lanes.mul4(d[k], shrink);
+                let o = lanes.add4(o[k], lanes.mul4(d, start));
+                side.origin[half][k][lane..lane + 4].copy_from_slice(&lanes.round4(o));
+                side.direction[half][k][lane..lane + 4].copy_from_slice(&lanes.round4(d));
+            }
+            side.limit[half][lane..lane + 4].copy_from_slice(&lanes.round4(limit));
+            let place = 4 * four..4 * four + 4;
+            side.factor[place.clone()].copy_from_slice(&lanes.store4(factor));
+            side.shift[place.clone()].copy_from_slice(&lanes.store4(shift));
+            side.window[place].copy_from_slice(&lanes.store4(lanes.div4(absolute, factor)));
+        }
+        // At most 8 and 2 * 4 in each coordinate.
+        side.error = 3.0 * (16.0 * (8.0 * U) + exp2i(-97));
+        self.inhabited && fine == 15
     }
 }
 

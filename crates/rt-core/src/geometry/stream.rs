@@ -44,7 +44,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
                 .tree
                 .nodes
                 .get(index)
-                .and_then(|node| descend(lanes, node, &self.slab, self.limit, &mut self.stack)),
+                .and_then(|node| descend(lanes, &geometry.tree, node, &self.slab, self.limit, &mut self.stack)),
             None => {
                 if geometry.store.visit(self.child.run(), self.ray, &mut self.query).is_break() {
                     return false;

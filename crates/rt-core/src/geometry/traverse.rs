@@ -30,11 +30,17 @@ pub(super) fn unpack(entry: u64) -> (f32, Child) {
 #[inline(always)]
 pub(super) fn descend<L: Lanes>(
     lanes: L,
+    tree: &Tree,
     node: &Node,
     slab: &SlabRay<L>,
     limit: f32,
     stack: &mut Stack<STACK>,
 ) -> Option<Child> {
+    let fetch = |child: Child| {
+        if let Some(node) = tree.nodes.get(child.0 as usize) {
+            lanes.prefetch(node);
+        }
+    };
     let (mut mask, at) = slab.test(lanes, &node.boxes, lanes.splat(limit));
     if mask == 0 {
         return None;
@@ -50,6 +56,8 @@ pub(super) fn descend<L: Lanes>(
     if far < near {
         (near, far) = (far, near);
     }
+    fetch(node.children[first]);
+    fetch(node.children[second]);
     mask &= mask - 1;
     let base = stack.len();
     stack.push(far);
@@ -57,6 +65,7 @@ pub(super) fn descend<L: Lanes>(
         let i = mask.trailing_zeros() as usize & 7;
         mask &= mask - 1;
         let mut next = entry(at[i], node.children[i]);
+        fetch(node.children[i]);
         if next < near {
             (near, next) = (next, near);
         }
@@ -111,7 +120,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
         };
         next = match child.as_node() {
             Some(index) => {
-                tree.nodes.get(index).and_then(|node| descend(lanes, node, &slab, limit, &mut stack))
+                tree.nodes.get(index).and_then(|node| descend(lanes, tree, node, &slab, limit, &mut stack))
             }
             None => {
                 store.visit(child.run(), ray, query)?;
