@@ -3,7 +3,7 @@
 
 use super::frame::{PACKET, Side, Window};
 use super::packet::Packet;
-use super::query::{Any, Nearest, Query, Ruling};
+use super::query::{Any, Nearest, Query};
 use super::stream::interleave;
 use super::{FindAny, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
@@ -45,9 +45,9 @@ impl Request for NearestRequest {
     }
     #[inline(always)]
     fn answer(geometry: &Geometry, ray: &Ray, query: &Nearest) -> Option<Found> {
-        match query.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(limit) => geometry.decide(ray, query.within(), limit, None),
+        match query.contested() {
+            None => query.best(),
+            Some(limit) => geometry.decide(ray, query.within(), limit, None),
         }
     }
     #[inline(always)]

@@ -31,7 +31,7 @@ use core::ops::ControlFlow;
 pub use cube::DirectionCube;
 use frame::{Frame, LocalRay};
 pub use query::Screen;
-use query::{Any, Contest, Crossings, Nearest, Path, Query, Ruling};
+use query::{Any, Contest, Crossings, Nearest, Path, Query};
 use store::{Run, Store};
 use traverse::traverse;
 use tree::{Child, Tree};
@@ -274,9 +274,9 @@ impl Vectorized for FindNearest<'_> {
             nearest.offer(from.object, hit);
         }
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
-        match nearest.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(limit) => geometry.decide(ray, within, limit, from),
+        match nearest.contested() {
+            None => nearest.best(),
+            Some(limit) => geometry.decide(ray, within, limit, from),
         }
     }
 }

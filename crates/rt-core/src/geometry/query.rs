@@ -64,6 +64,18 @@ impl Nearest {
         }
     }
 
+    /// What was found, unless that is [contested](Nearest::contested).
+    #[inline(always)]
+    pub fn best(&self) -> Option<Found> {
+        self.best
+    }
+
+    /// Where the hits end of which several objects have one, too close for their order to be sure.
+    #[inline(always)]
+    pub fn contested(&self) -> Option<f64> {
+        (self.best.is_some() && self.runner_up < self.limit).then_some(self.limit)
+    }
+
     /// What was found.
     #[inline(always)]
     pub fn ruling(&self) -> Ruling {
