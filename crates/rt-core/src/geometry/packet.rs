@@ -10,7 +10,7 @@ use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::Child;
 use crate::Ray;
-use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Stack, at_least};
+use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
 use crate::math::exp2i;
 
 /// Fewer rays are not worth a beam.
@@ -159,7 +159,8 @@ impl<Q: Query> Packet<'_, Q> {
         let ball_pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-18) + self.side.error);
         let mut end = lanes.greatest(lanes.max(lanes.load(&depths[0]), lanes.load(&depths[1])));
 
-        let mut stack = Stack::<STACK>::default();
+        let mut room = Room::<STACK>::default();
+        let mut stack = room.enter();
         let mut indices = 0..geometry.tree.roots;
         'node: loop {
             let base = stack.len();

@@ -6,7 +6,7 @@ use super::query::Query;
 use super::store::Store;
 use super::tree::{Child, Node, Tree};
 use crate::Ray;
-use crate::kernel::{Lanes, SlabRay, Stack};
+use crate::kernel::{Lanes, Room, SlabRay, Stack};
 use core::ops::ControlFlow;
 
 /// Each level leaves at most seven children behind.
@@ -87,7 +87,8 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     let slab = SlabRay::new(lanes, local.origin, local.error, local.direction);
     let mut end = query.limit();
     let mut limit = local.limit(end);
-    let mut stack = Stack::<STACK>::default();
+    let mut room = Room::<STACK>::default();
+    let mut stack = room.enter();
     let mut next = None;
     if tree.roots == 1 {
         next = Some(Child::node(0));
