@@ -130,14 +130,12 @@ fn block<R: Request, L: Lanes>(
             continue;
         }
         enter::<R, L>(lanes, geometry, &mut packet, &within[members.clone()], &mut answers[members.clone()]);
-        if let Some(bundle) = packet.bundle(lanes, geometry.tree.box_size) {
-            let active = packet.active;
-            packet.traverse(lanes, geometry, &bundle);
-            for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+        let active = packet.active;
+        let done = packet.search(lanes, geometry);
+        for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+            if done >> i & 1 == 1 {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
-            }
-        } else {
-            for (_, number) in members.enumerate().filter(|(i, _)| packet.active >> i & 1 == 1) {
+            } else {
                 alone[alone_count] = number as u16;
                 alone_count += 1;
             }
@@ -184,12 +182,12 @@ fn enter<R: Request, L: Lanes>(
     answers: &mut [R::Answer],
 ) {
     if geometry.apart.is_empty()
-        && let (Ok(rays), Ok(within)) = (packet.rays.try_into(), within.try_into())
-        && geometry.frame.enter_together(lanes, rays, within, &mut packet.side)
+        && geometry.frame.enter_together(lanes, packet.rays, within, &mut packet.side)
     {
-        packet.active = (1 << PACKET) - 1;
-        for i in 0..PACKET {
-            packet.queries[i] = R::query(within[i], Window { absolute: packet.side.window[i] });
+        packet.active = ((1_u64 << packet.rays.len()) - 1) as u32;
+        let windows = within.iter().zip(&packet.side.window);
+        for (query, (within, &absolute)) in packet.queries.iter_mut().zip(windows) {
+            *query = R::query(*within, Window { absolute });
         }
         return;
     }

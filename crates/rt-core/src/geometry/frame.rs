@@ -179,18 +179,20 @@ impl Frame {
     }
 }
 
+/// The rays that go side by side, by eight.
+pub(super) const GROUPS: usize = 4;
 /// The rays that go side by side.
-pub(super) const PACKET: usize = 16;
+pub(super) const PACKET: usize = 8 * GROUPS;
 
 /// Rays in kernel coordinates, by axis, in `f32`: for culling.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
     /// Eight each. Known within `error` and the rounding to nearest.
-    pub origin: [[[f32; 8]; 3]; 2],
+    pub origin: [[[f32; 8]; 3]; GROUPS],
     /// Rounded to nearest.
-    pub direction: [[[f32; 8]; 3]; 2],
+    pub direction: [[[f32; 8]; 3]; GROUPS],
     /// Where each ray's interval ends: an upper bound.
-    pub limit: [[f32; 8]; 2],
+    pub limit: [[f32; 8]; GROUPS],
     /// As in [`LocalRay`].
     pub factor: [f64; PACKET],
     pub shift: [f64; PACKET],
@@ -202,9 +204,9 @@ pub(super) struct Side {
 
 impl Side {
     pub const EMPTY: Side = Side {
-        origin: [[[0.0; 8]; 3]; 2],
-        direction: [[[0.0; 8]; 3]; 2],
-        limit: [[0.0; 8]; 2],
+        origin: [[[0.0; 8]; 3]; GROUPS],
+        direction: [[[0.0; 8]; 3]; GROUPS],
+        limit: [[0.0; 8]; GROUPS],
         factor: [0.0; PACKET],
         shift: [0.0; PACKET],
         window: [0.0; PACKET],
@@ -213,13 +215,13 @@ impl Side {
 
     /// Puts a ray into its place.
     pub fn set(&mut self, place: usize, ray: &LocalRay, end: f64) {
-        let (half, lane) = (place / 8 % 2, place % 8);
+        let (group, lane) = (place / 8 % GROUPS, place % 8);
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
         for axis in 0..3 {
-            self.origin[half][axis][lane] = o[axis] as f32;
-            self.direction[half][axis][lane] = d[axis] as f32;
+            self.origin[group][axis][lane] = o[axis] as f32;
+            self.direction[group][axis][lane] = d[axis] as f32;
         }
-        self.limit[half][lane] = ray.limit(end);
+        self.limit[group][lane] = ray.limit(end);
         self.factor[place % PACKET] = ray.factor;
         self.shift[place % PACKET] = ray.shift;
         let error = ray.error.x + ray.error.y + ray.error.z;
@@ -228,12 +230,12 @@ impl Side {
 
     /// Makes one place repeat another, but for its end, which comes before its start.
     pub fn repeat(&mut self, place: usize, other: usize) {
-        let (half, lane) = (place / 8 % 2, place % 8);
+        let (group, lane) = (place / 8 % GROUPS, place % 8);
         for axis in 0..3 {
-            self.origin[half][axis][lane] = self.origin[other / 8 % 2][axis][other % 8];
-            self.direction[half][axis][lane] = self.direction[other / 8 % 2][axis][other % 8];
+            self.origin[group][axis][lane] = self.origin[other / 8 % GROUPS][axis][other % 8];
+            self.direction[group][axis][lane] = self.direction[other / 8 % GROUPS][axis][other % 8];
         }
-        self.limit[half][lane] = f32::NEG_INFINITY;
+        self.limit[group][lane] = f32::NEG_INFINITY;
     }
 
     /// [`LocalRay::limit`] of this ray.
@@ -245,24 +247,29 @@ impl Side {
 }
 
 impl Frame {
-    /// [`enter`](Frame::enter) for a whole packet, where that is simple: all rays legal, and near the scene. Whether it
-    /// was.
+    /// [`enter`](Frame::enter) for a packet, where that is simple: all rays legal, and near the scene. Whether it was.
+    /// Places without a ray repeat the last.
     #[inline(always)]
     pub fn enter_together<L: Lanes>(
         &self,
         lanes: L,
-        rays: &[Ray; PACKET],
-        within: &[Interval; PACKET],
+        rays: &[Ray],
+        within: &[Interval],
         side: &mut Side,
     ) -> bool {
+        let last = rays.len().min(within.len()).wrapping_sub(1);
+        if last >= PACKET || !self.inhabited {
+            return false;
+        }
         let center = [self.center.x, self.center.y, self.center.z];
         let scale = lanes.splat4(exp2i(-self.exponent));
         let (small, large) = (lanes.splat4(exp2i(-1000)), lanes.splat4(exp2i(1000)));
         let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(exp2i(-24)));
         let mut fine = 15;
-        for four in 0..4 {
-            let (half, lane) = (four / 2, four % 2 * 4);
-            let [a, b, c, e] = [&rays[4 * four], &rays[4 * four + 1], &rays[4 * four + 2], &rays[4 * four + 3]];
+        for four in 0..PACKET / 4 {
+            let (group, lane) = (four / 2, four % 2 * 4);
+            let places = [4 * four, 4 * four + 1, 4 * four + 2, 4 * four + 3];
+            let [a, b, c, e] = places.map(|place| &rays[place.min(last)]);
             let world = [
                 lanes.load4([a.origin.x, b.origin.x, c.origin.x, e.origin.x]),
                 lanes.load4([a.origin.y, b.origin.y, c.origin.y, e.origin.y]),
@@ -273,8 +280,7 @@ impl Frame {
                 lanes.load4([a.direction.y, b.direction.y, c.direction.y, e.direction.y]),
                 lanes.load4([a.direction.z, b.direction.z, c.direction.z, e.direction.z]),
             ];
-            let [a, b, c, e] =
-                [&within[4 * four], &within[4 * four + 1], &within[4 * four + 2], &within[4 * four + 3]];
+            let [a, b, c, e] = places.map(|place| &within[place.min(last)]);
             let (min, max) =
                 (lanes.load4([a.min, b.min, c.min, e.min]), lanes.load4([a.max, b.max, c.max, e.max]));
             // Zero times a number is zero, unless the number is infinite or NaN.
@@ -307,10 +313,10 @@ impl Frame {
             for k in 0..3 {
                 let d = lanes.mul4(d[k], shrink);
                 let o = lanes.add4(o[k], lanes.mul4(d, start));
-                side.origin[half][k][lane..lane + 4].copy_from_slice(&lanes.round4(o));
-                side.direction[half][k][lane..lane + 4].copy_from_slice(&lanes.round4(d));
+                side.origin[group][k][lane..lane + 4].copy_from_slice(&lanes.round4(o));
+                side.direction[group][k][lane..lane + 4].copy_from_slice(&lanes.round4(d));
             }
-            side.limit[half][lane..lane + 4].copy_from_slice(&lanes.round4(limit));
+            side.limit[group][lane..lane + 4].copy_from_slice(&lanes.round4(limit));
             let place = 4 * four..4 * four + 4;
             side.factor[place.clone()].copy_from_slice(&lanes.store4(factor));
             side.shift[place.clone()].copy_from_slice(&lanes.store4(shift));
@@ -318,7 +324,10 @@ impl Frame {
         }
         // At most 8 and 2 * 4 in each coordinate.
         side.error = 3.0 * (16.0 * (8.0 * U) + exp2i(-97));
-        self.inhabited && fine == 15
+        for place in last + 1..PACKET {
+            side.limit[place / 8][place % 8] = f32::NEG_INFINITY;
+        }
+        fine == 15
     }
 }
 

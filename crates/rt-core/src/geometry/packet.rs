@@ -1,10 +1,10 @@
-//! Sixteen rays down the tree together, as a beam: for rays that go side by side, as a camera's do.
+//! Some rays down the tree together, as a beam: for rays that go side by side, as a camera's do.
 //!
 //! Inner boxes are tested once for all rays, leaves with each ray. Source of the idea: Reshetov, Soupikov, Hurley
 //! 2005, "Multi-level ray tracing algorithm" (doi:10.1145/1073204.1073329).
 
 use super::Geometry;
-use super::frame::{PACKET, Side};
+use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
 use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
@@ -12,13 +12,17 @@ use super::tree::Child;
 use crate::Ray;
 use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
 use crate::math::exp2i;
+use core::ops::Range;
 
 /// Fewer rays are not worth a beam.
 const FEWEST: u32 = 4;
 
 /// A beam visits as many boxes as cross it. Up to this many times those that cross a ray, it still costs less than its
-/// sixteen rays one by one: it decides time only.
+/// rays one by one: it decides time only.
 const MOST_SPREAD: f64 = 64.0;
+
+/// The same for a whole packet; a wider one is halved.
+const MOST_SPREAD_OF_WHOLE: f64 = 16.0;
 
 /// The rays of a packet and their queries.
 pub(super) struct Packet<'a, Q> {
@@ -30,14 +34,32 @@ pub(super) struct Packet<'a, Q> {
     pub active: u32,
 }
 
+/// The bits of these groups' rays.
+fn mask_of(groups: &Range<usize>) -> u32 {
+    let below = |group: usize| ((1_u64 << (8 * group)) - 1) as u32;
+    below(groups.end) & !below(groups.start)
+}
+
+/// The greatest of all.
+#[inline(always)]
+fn greatest<L: Lanes>(lanes: L, all: &[[f32; 8]; GROUPS]) -> f32 {
+    let mut most = lanes.load(&all[0]);
+    for group in &all[1..] {
+        most = lanes.max(most, lanes.load(group));
+    }
+    lanes.greatest(most)
+}
+
 /// The beam of a packet's rays.
 pub(super) struct Bundle {
     pub shape: BeamShape,
     /// The largest |coordinate| of the origins.
     far: f32,
     /// Where each ray begins, in depth of the beam, and how fast it gets deeper.
-    start: [[f32; 8]; 2],
-    depth: [[f32; 8]; 2],
+    start: [[f32; 8]; GROUPS],
+    depth: [[f32; 8]; GROUPS],
+    /// The rays it holds, by eight.
+    groups: Range<usize>,
 }
 
 /// The sums and products of a ray's depth err by less than 2^-22 of their parts.
@@ -47,26 +69,41 @@ impl Bundle {
     /// An upper bound of the depth at which a ray ends.
     #[inline(always)]
     fn end(&self, i: usize, limit: f32) -> f32 {
-        let along = limit * self.depth[i / 8 % 2][i % 8];
+        let along = limit * self.depth[i / 8 % GROUPS][i % 8];
         let (more, less) = (along * (1.0 + STEP), along * (1.0 - STEP));
-        (if more > less { more } else { less }) + (self.start[i / 8 % 2][i % 8] + (self.far + 1.0) * STEP)
+        (if more > less { more } else { less }) + (self.start[i / 8 % GROUPS][i % 8] + (self.far + 1.0) * STEP)
     }
 
     /// The same for eight rays.
     #[inline(always)]
-    fn ends<L: Lanes>(&self, lanes: L, half: usize, limit: &[f32; 8]) -> [f32; 8] {
-        let along = lanes.mul(lanes.load(limit), lanes.load(&self.depth[half % 2]));
+    fn ends<L: Lanes>(&self, lanes: L, group: usize, limit: &[f32; 8]) -> [f32; 8] {
+        let along = lanes.mul(lanes.load(limit), lanes.load(&self.depth[group % GROUPS]));
         let along =
             lanes.max(lanes.mul(along, lanes.splat(1.0 + STEP)), lanes.mul(along, lanes.splat(1.0 - STEP)));
-        let start = lanes.add(lanes.load(&self.start[half % 2]), lanes.splat((self.far + 1.0) * STEP));
+        let start = lanes.add(lanes.load(&self.start[group % GROUPS]), lanes.splat((self.far + 1.0) * STEP));
         lanes.store(lanes.add(along, start))
     }
 }
 
-/// Least and greatest of sixteen.
-#[inline(always)]
-fn span<L: Lanes>(lanes: L, a: L::F, b: L::F) -> [f32; 2] {
-    [lanes.least(lanes.min(a, b)), lanes.greatest(lanes.max(a, b))]
+/// Least and greatest so far, in each lane.
+#[derive(Clone, Copy)]
+struct Span<L: Lanes>(L::F, L::F);
+
+impl<L: Lanes> Span<L> {
+    #[inline(always)]
+    fn new(lanes: L) -> Self {
+        Span(lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY))
+    }
+
+    #[inline(always)]
+    fn add(&mut self, lanes: L, x: L::F) {
+        (self.0, self.1) = (lanes.min(self.0, x), lanes.max(self.1, x));
+    }
+
+    #[inline(always)]
+    fn ends(&self, lanes: L) -> [f32; 2] {
+        [lanes.least(self.0), lanes.greatest(self.1)]
+    }
 }
 
 /// The beam that holds the rays, if they go side by side closely enough. `box_size` is that of a typical shape.
@@ -75,8 +112,15 @@ fn span<L: Lanes>(lanes: L, a: L::F, b: L::F) -> [f32; 2] {
 /// made in two steps, and errs by 4.1 v of itself. A position is `o - s (z - plane)` with origins that err by v m, and
 /// |z - plane| <= 2 m: it errs by less than 2 v m + 15 v |s| m, less than 2^-20 m (1 + |s|).
 #[inline(always)]
-fn bundle<L: Lanes>(lanes: L, side: &Side, box_size: f64) -> Option<Bundle> {
-    let [x, y, z] = side.direction[0].map(|d| d[0].abs());
+fn bundle<L: Lanes>(
+    lanes: L,
+    side: &Side,
+    groups: Range<usize>,
+    box_size: f64,
+    most_spread: f64,
+) -> Option<Bundle> {
+    let first = groups.start % GROUPS;
+    let [x, y, z] = [0, 1, 2].map(|k| side.direction[first][k][0].abs());
     let axis = if x >= y && x >= z {
         0
     } else if y >= z {
@@ -84,39 +128,46 @@ fn bundle<L: Lanes>(lanes: L, side: &Side, box_size: f64) -> Option<Bundle> {
     } else {
         2
     };
-    let sign = 1.0_f32.copysign(side.direction[0][axis][0]);
+    let sign = 1.0_f32.copysign(side.direction[first][axis][0]);
     let signs = lanes.splat(sign);
-    let [low, high] = [&side.direction[0][axis], &side.direction[1][axis]];
-    let depth = [lanes.mul(lanes.load(low), signs), lanes.mul(lanes.load(high), signs)];
+    let (mut depth, mut start) = ([[0.0; 8]; GROUPS], [[0.0; 8]; GROUPS]);
+    let mut inverse = [lanes.splat(0.0); GROUPS];
+    let (mut depths, mut planes) = (Span::new(lanes), Span::new(lanes));
+    for (origin, direction) in side.origin.iter().zip(&side.direction).skip(first).take(groups.len()) {
+        depths.add(lanes, lanes.mul(lanes.load(&direction[axis]), signs));
+        planes.add(lanes, lanes.load(&origin[axis]));
+    }
     // Not for slopes beyond 4, nor for rays without a place.
-    if !(lanes.least(lanes.min(depth[0], depth[1])) >= 0.5 && side.error < 1.0) {
+    if !(depths.ends(lanes)[0] >= 0.5 && side.error < 1.0) {
         return None;
     }
-    let inverse = [lanes.inverse(depth[0]), lanes.inverse(depth[1])];
-    let origin = [lanes.load(&side.origin[0][axis]), lanes.load(&side.origin[1][axis])];
-    let [least, most] = span(lanes, origin[0], origin[1]);
+    let [least, most] = planes.ends(lanes);
     let plane = if sign > 0.0 { least } else { most };
-    let planes = lanes.splat(plane);
-    let start = [
-        lanes.mul(lanes.sub(origin[0], planes), signs),
-        lanes.mul(lanes.sub(origin[1], planes), signs),
-    ];
     let larger = |a: f32, b: f32| if a > b { a } else { b };
     let mut far = larger(least.abs(), most.abs());
+    for group in groups.clone() {
+        let group = group % GROUPS;
+        let along = lanes.mul(lanes.load(&side.direction[group][axis]), signs);
+        let begin = lanes.sub(lanes.load(&side.origin[group][axis]), lanes.splat(plane));
+        inverse[group] = lanes.inverse(along);
+        depth[group] = lanes.store(along);
+        start[group] = lanes.store(lanes.mul(begin, signs));
+    }
     let (mut position, mut slope) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
     let mut spread = 1.0;
     for i in 0..2 {
         let k = (axis + 1 + i) % 3;
-        let origin = [lanes.load(&side.origin[0][k]), lanes.load(&side.origin[1][k])];
-        let direction = [lanes.load(&side.direction[0][k]), lanes.load(&side.direction[1][k])];
-        let slopes = [lanes.mul(direction[0], inverse[0]), lanes.mul(direction[1], inverse[1])];
-        let [a, b] = span(
-            lanes,
-            lanes.sub(origin[0], lanes.mul(slopes[0], start[0])),
-            lanes.sub(origin[1], lanes.mul(slopes[1], start[1])),
-        );
-        let [c, d] = span(lanes, slopes[0], slopes[1]);
-        let [least, most] = span(lanes, origin[0], origin[1]);
+        let (mut origins, mut slopes, mut positions) = (Span::new(lanes), Span::new(lanes), Span::new(lanes));
+        for group in groups.clone() {
+            let group = group % GROUPS;
+            let origin = lanes.load(&side.origin[group][k]);
+            let slope = lanes.mul(lanes.load(&side.direction[group][k]), inverse[group]);
+            origins.add(lanes, origin);
+            slopes.add(lanes, slope);
+            positions.add(lanes, lanes.sub(origin, lanes.mul(slope, lanes.load(&start[group]))));
+        }
+        let ([a, b], [c, d]) = (positions.ends(lanes), slopes.ends(lanes));
+        let [least, most] = origins.ends(lanes);
         far = larger(far, larger(least.abs(), most.abs()));
         position[i] = [f64::from(a), f64::from(b)];
         slope[i] = [f64::from(c), f64::from(d)];
@@ -131,33 +182,60 @@ fn bundle<L: Lanes>(lanes: L, side: &Side, box_size: f64) -> Option<Bundle> {
         slope,
         error: side.error + f64::from(far) * exp2i(-20),
     };
-    let [a, b, c, d] =
-        [lanes.store(start[0]), lanes.store(start[1]), lanes.store(depth[0]), lanes.store(depth[1])];
-    (spread <= MOST_SPREAD).then_some(Bundle { shape, far, start: [a, b], depth: [c, d] })
+    (spread <= most_spread).then_some(Bundle { shape, far, start, depth, groups })
 }
 
 impl<Q: Query> Packet<'_, Q> {
-    /// The beam of the rays, if there are enough, and go side by side closely enough.
+    /// Shows each ray's query the shapes that the ray may hit, if there are enough rays, and they go side by side closely
+    /// enough, all or one half. Returns those for which that was so, one bit each.
     #[inline(always)]
-    pub fn bundle<L: Lanes>(&self, lanes: L, box_size: f64) -> Option<Bundle> {
-        if self.active.count_ones() < FEWEST { None } else { bundle(lanes, &self.side, box_size) }
+    pub fn search<L: Lanes>(&mut self, lanes: L, geometry: &Geometry) -> u32 {
+        let active = self.active;
+        let mut rest = [0..GROUPS, 0..0, 0..0];
+        let mut left = 1;
+        let mut done = 0;
+        while left > 0 {
+            left -= 1;
+            let groups = rest[left].clone();
+            let members = active & mask_of(&groups);
+            if members.count_ones() < FEWEST {
+                continue;
+            }
+            let whole = groups.len() == GROUPS;
+            let most_spread = if whole { MOST_SPREAD_OF_WHOLE } else { MOST_SPREAD };
+            match bundle(lanes, &self.side, groups, geometry.tree.box_size, most_spread) {
+                Some(bundle) => {
+                    done |= members;
+                    self.active = members;
+                    self.traverse(lanes, geometry, &bundle);
+                }
+                None if whole => {
+                    rest = [0..GROUPS / 2, GROUPS / 2..GROUPS, 0..0];
+                    left = 2;
+                }
+                None => {}
+            }
+        }
+        done
     }
 
     /// Shows each ray's query the shapes that the ray may hit.
     #[inline(always)]
-    pub fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, bundle: &Bundle) {
+    fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, bundle: &Bundle) {
         let beam = Beam::new(lanes, &bundle.shape);
-        let Side { origin, direction, .. } = &self.side;
-        let rays = [
-            EightRays::new(lanes, &origin[0], &direction[0]),
-            EightRays::new(lanes, &origin[1], &direction[1]),
-        ];
+        let mut rays = [EightRays::EMPTY; GROUPS];
         // The end of each ray, and that of the beam at the same place.
-        let mut limits = self.side.limit;
-        let mut depths = [bundle.ends(lanes, 0, &limits[0]), bundle.ends(lanes, 1, &limits[1])];
+        let mut limits = [[f32::NEG_INFINITY; 8]; GROUPS];
+        let mut depths = [[f32::NEG_INFINITY; 8]; GROUPS];
+        for group in bundle.groups.clone() {
+            let group = group % GROUPS;
+            rays[group] = EightRays::new(lanes, &self.side.origin[group], &self.side.direction[group]);
+            limits[group] = self.side.limit[group];
+            depths[group] = bundle.ends(lanes, group, &limits[group]);
+        }
         let pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-21) + self.side.error);
         let ball_pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-18) + self.side.error);
-        let mut end = lanes.greatest(lanes.max(lanes.load(&depths[0]), lanes.load(&depths[1])));
+        let mut end = greatest(lanes, &depths);
 
         let mut room = Room::<STACK>::default();
         let mut stack = room.enter();
@@ -190,18 +268,19 @@ impl<Q: Query> Packet<'_, Q> {
                 let Some(node) = geometry.tree.nodes.get(node) else { continue };
                 let (min, max) = node.boxes.corners(lane);
                 let run = node.children[lane].run();
-                let (low, high) = if run.kind == Store::BALL && run.count == 1 {
-                    (
-                        rays[0].test_ball(lanes, min, max, ball_pad, &limits[0]),
-                        rays[1].test_ball(lanes, min, max, ball_pad, &limits[1]),
-                    )
-                } else {
-                    (
-                        rays[0].test(lanes, min, max, pad, &limits[0]),
-                        rays[1].test(lanes, min, max, pad, &limits[1]),
-                    )
-                };
-                let mut mask = (low | high << 8) & self.active;
+                let ball = run.kind == Store::BALL && run.count == 1;
+                let mut mask = 0;
+                for group in bundle.groups.clone() {
+                    let group = group % GROUPS;
+                    let (rays, limits) = (&rays[group], &limits[group]);
+                    let met = if ball {
+                        rays.test_ball(lanes, min, max, ball_pad, limits)
+                    } else {
+                        rays.test(lanes, min, max, pad, limits)
+                    };
+                    mask |= met << (8 * group);
+                }
+                mask &= self.active;
                 let mut changed = false;
                 while mask != 0 {
                     let i = mask.trailing_zeros() as usize & (PACKET - 1);
@@ -223,7 +302,7 @@ impl<Q: Query> Packet<'_, Q> {
                     if self.active == 0 {
                         return;
                     }
-                    end = lanes.greatest(lanes.max(lanes.load(&depths[0]), lanes.load(&depths[1])));
+                    end = greatest(lanes, &depths);
                 }
             }
             return;

@@ -13,6 +13,14 @@ pub struct EightRays {
 }
 
 impl EightRays {
+    /// No rays in particular.
+    pub const EMPTY: EightRays = EightRays {
+        origin: [[0.0; 8]; 3],
+        direction: [[1.0; 8]; 3],
+        inverse: [[1.0; 8]; 3],
+        inverse_square: [1.0; 8],
+    };
+
     /// The rays with these origins and directions, rounded to nearest, by axis. The largest coordinate of a direction is
     /// in [1, 2].
     #[inline(always)]
