@@ -75,25 +75,28 @@ pub(super) fn is_regular(bounds: &Aabb) -> bool {
 }
 
 impl Frame {
-    /// The frame for these boxes, all of them regular.
-    pub fn around(boxes: &[Aabb]) -> Frame {
-        if boxes.is_empty() {
-            return Frame::default();
-        }
+    /// The frame for so many boxes, of which some may be none; all others are regular.
+    pub fn around(count: usize, boxes: impl Iterator<Item = Option<Aabb>> + Clone) -> Frame {
         // A sample is enough, and any point will do.
-        let step = boxes.len().div_ceil(1024);
+        let sample: Vec<DVec3> =
+            boxes.clone().step_by(count.div_ceil(1024).max(1)).flatten().map(|b| b.center()).collect();
         let median = |axis: usize| {
-            let mut centers: Vec<f64> = boxes.iter().step_by(step).map(|b| b.center()[axis]).collect();
+            let mut centers: Vec<f64> = sample.iter().map(|center| center[axis]).collect();
             let middle = centers.len() / 2;
-            *centers.select_nth_unstable_by(middle, f64::total_cmp).1
+            if centers.is_empty() { 0.0 } else { *centers.select_nth_unstable_by(middle, f64::total_cmp).1 }
         };
         let center = DVec3::new(median(0), median(1), median(2));
-        let reach = boxes
-            .iter()
-            .fold(DVec3::ZERO, |reach, b| reach.max((b.min - center).abs()).max((b.max - center).abs()));
+        let mut inhabited = false;
+        let reach = boxes.flatten().fold(DVec3::ZERO, |reach, b| {
+            inhabited = true;
+            reach.max((b.min - center).abs()).max((b.max - center).abs())
+        });
+        if !inhabited {
+            return Frame::default();
+        }
         // A spare factor of 2 leaves room for the rounding of these differences.
         let exponent = (exponent(reach.max_element()) + 2).clamp(-962, 964);
-        Frame { center, exponent, inhabited: true }
+        Frame { center, exponent, inhabited }
     }
 
     /// The box in kernel coordinates, rounded outward. Half a unit for the subtraction is outweighed by a whole

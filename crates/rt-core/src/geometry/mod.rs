@@ -23,7 +23,7 @@ mod stream;
 mod traverse;
 mod tree;
 
-use crate::kernel::{Lanes, Vectorized, vectorize};
+use crate::kernel::{Lanes, Vectorized, vec_on_large_pages, vectorize};
 use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
@@ -88,13 +88,10 @@ impl GeometryBuilder {
     /// Prepares the set for rays.
     pub fn build(self) -> Geometry {
         let GeometryBuilder { shapes, plain } = self;
-        let bounds: Vec<Option<Aabb>> =
-            shapes.iter().map(|shape| shape.bounds().filter(frame::is_regular)).collect();
-        let regular: Vec<Aabb> = bounds.iter().flatten().copied().collect();
-        let frame = Frame::around(&regular);
+        let frame = Frame::around(shapes.len(), shapes.iter().map(regular_bounds));
         let mut geometry = Geometry { shapes, frame, plain, ..Geometry::default() };
         if !plain {
-            geometry.accelerate(&bounds);
+            geometry.accelerate();
         }
         geometry
     }
@@ -116,16 +113,16 @@ impl Geometry {
         self.tree.bytes() + self.store.bytes()
     }
 
-    fn accelerate(&mut self, bounds: &[Option<Aabb>]) {
-        let mut items = Vec::with_capacity(bounds.len());
+    fn accelerate(&mut self) {
+        let mut items = vec_on_large_pages(self.shapes.len());
         let mut apart: [Vec<u32>; Store::KINDS] = Default::default();
         let mut counts = [0; Store::KINDS];
-        for (object, (shape, bounds)) in self.shapes.iter().zip(bounds).enumerate() {
+        for (object, shape) in self.shapes.iter().enumerate() {
             let (object, kind) = (object as u32, Store::kind_of(shape));
             counts[kind as usize] += 1;
-            match bounds {
+            match regular_bounds(shape) {
                 Some(bounds) if items.len() < Child::CAPACITY => {
-                    let (min, max) = self.frame.outward(bounds);
+                    let (min, max) = self.frame.outward(&bounds);
                     items.push(Item { min, object, max, kind });
                 }
                 _ => apart[kind as usize].push(object),
@@ -243,6 +240,11 @@ impl Geometry {
     fn decide(&self, ray: &Ray, within: Interval, limit: f64, from: Option<&Departure>) -> Option<Found> {
         vectorize(Decide { geometry: self, ray, within, limit, from })
     }
+}
+
+/// The box of a shape that can be put into the tree.
+fn regular_bounds(shape: &Shape) -> Option<Aabb> {
+    shape.bounds().filter(frame::is_regular)
 }
 
 /// Whether the ray can hit anything in the interval.
