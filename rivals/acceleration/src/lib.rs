@@ -6,13 +6,12 @@ use rt_core::shape::{Sphere, Torus};
 use rt_core::{Geometry, Ray};
 
 /// The seconds that this thread has spent on a processor: unlike the time of day, not disturbed by other programs that
-/// wait for the same processor. The time of day where Linux's `/proc` is missing.
+/// wait for the same processor.
 pub fn cpu_seconds() -> f64 {
-    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
-    let wall = START.get_or_init(std::time::Instant::now).elapsed().as_secs_f64();
-    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = stat.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
-    nanoseconds.map_or(wall, |nanoseconds| nanoseconds * 1e-9)
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: the pointer is that of a `timespec` of ours.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
 struct SplitMix(u64);

@@ -1,9 +1,9 @@
 //! Many rays at once: packets of those that go side by side, the others interleaved. The answers are the same bits as
 //! one by one: the ways differ only in which boxes they pass over.
 
-use super::frame::{LocalRay, Window};
-use super::packet::{PACKET, Packet};
-use super::query::{Any, Nearest, Query, Ruling};
+use super::frame::{PACKET, Side, Window};
+use super::packet::Packet;
+use super::query::{Any, Nearest, Query};
 use super::stream::interleave;
 use super::{FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
@@ -53,9 +53,9 @@ impl Request for NearestRequest {
     }
     #[inline(always)]
     fn answer(geometry: &Geometry, ray: &Ray, query: &Nearest) -> Option<Found> {
-        match query.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(limit) => geometry.decide(ray, query.within(), limit, None),
+        match query.contested() {
+            None => query.best(),
+            Some(limit) => geometry.decide(ray, query.within(), limit, None),
         }
     }
     #[inline(always)]
@@ -131,7 +131,7 @@ fn block<R: Request, L: Lanes>(
     let mut alone_count = 0;
     let mut packet = Packet {
         rays,
-        locals: [LocalRay::EVERYWHERE; PACKET],
+        side: Side::EMPTY,
         queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
         active: 0,
     };
@@ -146,34 +146,21 @@ fn block<R: Request, L: Lanes>(
             }
             continue;
         }
-        for (i, number) in members.clone().enumerate() {
-            let (ray, within) = (&rays[number], within[number]);
-            answers[number] = R::nothing();
-            if !is_legal(ray, within) {
-                continue;
-            }
-            let (local, window) = geometry.frame.enter(ray, within);
-            let query = &mut packet.queries[i];
-            *query = R::query(within, window, skip.get(number).copied());
-            let seen = geometry.ask_apart(ray, query).is_break();
-            match local {
-                Some(local) if !seen => {
-                    packet.locals[i] = local;
-                    packet.active |= 1 << i;
-                }
-                _ => answers[number] = R::answer(geometry, ray, query),
-            }
-        }
+        let skip = skip.get(members.clone()).unwrap_or(&[]);
+        enter::<R, L>(
+            lanes,
+            geometry,
+            &mut packet,
+            &within[members.clone()],
+            skip,
+            &mut answers[members.clone()],
+        );
         let active = packet.active;
-        let places = packet.places();
-        let beam = places.as_ref().and_then(|places| places.beam(geometry.tree.box_size));
-        if let (Some(places), Some(beam)) = (places, beam) {
-            packet.traverse(lanes, geometry, &places, &beam);
-            for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+        let done = packet.search(lanes, geometry);
+        for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+            if done >> i & 1 == 1 {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
-            }
-        } else {
-            for (_, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+            } else {
                 alone[alone_count] = number as u16;
                 alone_count += 1;
             }
@@ -209,6 +196,51 @@ fn block<R: Request, L: Lanes>(
     interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
         answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
     });
+}
+
+/// Makes the rays of a packet and their queries ready; answers those that cannot meet the tree.
+#[inline(always)]
+fn enter<R: Request, L: Lanes>(
+    lanes: L,
+    geometry: &Geometry,
+    packet: &mut Packet<R::Query>,
+    within: &[Interval],
+    skip: &[u32],
+    answers: &mut [R::Answer],
+) {
+    if geometry.apart.is_empty()
+        && geometry.frame.enter_together(lanes, packet.rays, within, &mut packet.side)
+    {
+        packet.active = ((1_u64 << packet.rays.len()) - 1) as u32;
+        let windows = within.iter().zip(&packet.side.window);
+        for (i, (query, (within, &absolute))) in packet.queries.iter_mut().zip(windows).enumerate() {
+            *query = R::query(*within, Window { absolute }, skip.get(i).copied());
+        }
+        return;
+    }
+    packet.side.error = 0.0;
+    let rays = packet.rays.iter().zip(within).zip(answers);
+    for (i, ((ray, within), answer)) in rays.enumerate() {
+        *answer = R::nothing();
+        if !is_legal(ray, *within) {
+            continue;
+        }
+        let (local, window) = geometry.frame.enter(ray, *within);
+        let query = &mut packet.queries[i];
+        *query = R::query(*within, window, skip.get(i).copied());
+        let seen = geometry.ask_apart(ray, query).is_break();
+        match local {
+            Some(local) if !seen => {
+                packet.side.set(i, &local, query.limit());
+                packet.active |= 1 << i;
+            }
+            _ => *answer = R::answer(geometry, ray, query),
+        }
+    }
+    let any = packet.active.trailing_zeros() as usize;
+    for i in (0..PACKET).filter(|i| packet.active >> i & 1 == 0) {
+        packet.side.repeat(i, any);
+    }
 }
 
 /// A glance whether rays may make a beam: whether the first, the middle and the last have much the same direction.

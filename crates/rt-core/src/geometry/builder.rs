@@ -109,7 +109,10 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
     build_node(items, 0, whole, &mut nodes);
     number_by_kind(items, &mut nodes);
-    // Shrinking in place would copy them to pages of common size.
+    // What is left over of a large array was never touched, and is memory in name only.
+    if nodes.len() > 4096 {
+        return Tree { nodes, roots: 1, box_size };
+    }
     let mut exact = vec_on_large_pages(nodes.len());
     exact.append(&mut nodes);
     Tree { nodes: exact, roots: 1, box_size }
@@ -134,28 +137,28 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
     nodes.push(Node::EMPTY);
     let mut parts = [Part { start: 0, ..whole }; 8];
     let mut count = 1;
-    // The widest of the parts that need a node of their own is divided first. When none does, the smallest part that
-    // fits is dissolved: all its items get a lane here, which spares its node.
-    let mut dissolving = [false; 8];
+    // The widest of the parts that need a node of their own is divided first.
     while count < 8 {
-        let free = 8 - count;
-        let wide = |part: &Part| part.count > 8;
-        let chosen = if parts[..count].iter().any(wide) {
-            (0..count)
-                .filter(|&i| wide(&parts[i]))
-                .max_by(|&i, &j| parts[i].bounds.half_area().total_cmp(&parts[j].bounds.half_area()))
-        } else {
-            (0..count)
-                .filter(|&i| parts[i].count > 1 && parts[i].count - 1 <= free)
-                .min_by_key(|&i| (!dissolving[i], parts[i].count <= 2, parts[i].count))
-        };
-        let Some(chosen) = chosen else { break };
+        let wide = |&i: &usize| parts[i].count > 8;
+        let by_area =
+            |&i: &usize, &j: &usize| parts[i].bounds.half_area().total_cmp(&parts[j].bounds.half_area());
+        let Some(chosen) = (0..count).filter(wide).max_by(by_area) else { break };
         let part = parts[chosen];
-        if part.count <= 8 {
-            (dissolving[chosen], dissolving[count]) = (true, true);
-        }
         (parts[chosen], parts[count]) = split(&mut items[part.start..part.start + part.count], part);
         count += 1;
+    }
+    // When none does, the smallest part that fits is dissolved: all its items get a lane here, which spares its node.
+    loop {
+        let fits = |&i: &usize| parts[i].count > 1 && count + parts[i].count - 1 <= 8;
+        let chosen = (0..count).filter(fits).min_by_key(|&i| (parts[i].count <= 2, parts[i].count));
+        let Some(chosen) = chosen else { break };
+        let part = parts[chosen];
+        for (i, item) in items[part.start..part.start + part.count].iter().enumerate() {
+            let place = if i == 0 { chosen } else { count + i - 1 };
+            parts[place] =
+                Part { start: part.start + i, count: 1, depth: part.depth, bounds: Bounds::of(item) };
+        }
+        count += part.count - 1;
     }
     let parts = &mut parts[..count];
     parts.sort_unstable_by_key(|part| part.start);
@@ -233,11 +236,11 @@ fn split(items: &mut [Item], part: Part) -> (Part, Part) {
     let (middle, left, right) = match plane {
         Some(plane) => {
             let mut middle = 0;
+            // Without a branch on what cannot be predicted: those on the right change places among each other.
             for i in 0..items.len() {
-                if plane.is_left(&items[i]) {
-                    items.swap(i, middle);
-                    middle += 1;
-                }
+                let left = plane.is_left(&items[i]);
+                items.swap(i, middle);
+                middle += usize::from(left);
             }
             (middle, plane.left, plane.right)
         }
@@ -294,12 +297,6 @@ impl Plane {
     }
 }
 
-/// The nodes that so many items fill: parts that fill theirs make a smaller tree.
-#[inline(always)]
-fn nodes_for(items: u32) -> f32 {
-    items.div_ceil(8) as f32
-}
-
 /// The plane of least cost, if the centres differ.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let mut centers = Bounds::EMPTY;
@@ -337,13 +334,13 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
         for bin in (1..count).rev() {
             all.add(&boxes[bin][axis]);
             number += counts[bin][axis];
-            cost_right[bin] = all.half_area() * nodes_for(number);
+            cost_right[bin] = all.half_area() * number as f32;
         }
         (all, number) = (Bounds::EMPTY, 0);
         for bin in 1..count {
             all.add(&boxes[bin - 1][axis]);
             number += counts[bin - 1][axis];
-            let cost = all.half_area() * nodes_for(number) + cost_right[bin];
+            let cost = all.half_area() * number as f32 + cost_right[bin];
             if number > 0 && number < total && best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, axis, bin));
             }

@@ -18,7 +18,7 @@
 
 use super::frame::Windows;
 use super::outline::{Face, Outline};
-use super::query::{Nearest, Path, Query, Ruling, Screen};
+use super::query::{Nearest, Path, Query, Screen};
 use super::{Found, Geometry, frame, is_legal};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{largest, moderate};
@@ -233,9 +233,9 @@ impl Geometry {
                 let _ = nearest.visit(ray, object, shape);
             }
         }
-        match nearest.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(limit) => self.decide(ray, within, limit, None),
+        match nearest.contested() {
+            None => nearest.best(),
+            Some(limit) => self.decide(ray, within, limit, None),
         }
     }
 

@@ -5,7 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
-use crate::kernel::{at_least, round_down, round_up};
+use crate::kernel::{Lanes, at_least, round_down, round_up};
 use crate::math::{exp2i, exponent};
 use crate::scaled::largest;
 use crate::{Aabb, Interval, Ray};
@@ -58,7 +58,7 @@ impl LocalRay {
 /// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
-    absolute: f64,
+    pub absolute: f64,
 }
 
 impl Window {
@@ -102,25 +102,28 @@ pub(super) fn is_regular(bounds: &Aabb) -> bool {
 }
 
 impl Frame {
-    /// The frame for these boxes, all of them regular.
-    pub fn around(boxes: &[Aabb]) -> Frame {
-        if boxes.is_empty() {
-            return Frame::default();
-        }
+    /// The frame for so many boxes, of which some may be none; all others are regular.
+    pub fn around(count: usize, boxes: impl Iterator<Item = Option<Aabb>> + Clone) -> Frame {
         // A sample is enough, and any point will do.
-        let step = boxes.len().div_ceil(1024);
+        let sample: Vec<DVec3> =
+            boxes.clone().step_by(count.div_ceil(1024).max(1)).flatten().map(|b| b.center()).collect();
         let median = |axis: usize| {
-            let mut centers: Vec<f64> = boxes.iter().step_by(step).map(|b| b.center()[axis]).collect();
+            let mut centers: Vec<f64> = sample.iter().map(|center| center[axis]).collect();
             let middle = centers.len() / 2;
-            *centers.select_nth_unstable_by(middle, f64::total_cmp).1
+            if centers.is_empty() { 0.0 } else { *centers.select_nth_unstable_by(middle, f64::total_cmp).1 }
         };
         let center = DVec3::new(median(0), median(1), median(2));
-        let reach = boxes
-            .iter()
-            .fold(DVec3::ZERO, |reach, b| reach.max((b.min - center).abs()).max((b.max - center).abs()));
+        let mut inhabited = false;
+        let reach = boxes.flatten().fold(DVec3::ZERO, |reach, b| {
+            inhabited = true;
+            reach.max((b.min - center).abs()).max((b.max - center).abs())
+        });
+        if !inhabited {
+            return Frame::default();
+        }
         // A spare factor of 2 leaves room for the rounding of these differences.
         let exponent = (exponent(reach.max_element()) + 2).clamp(-962, 964);
-        Frame { center, exponent, inhabited: true }
+        Frame { center, exponent, inhabited }
     }
 
     /// The box in kernel coordinates, rounded outward. Half a unit for the subtraction is outweighed by a whole
@@ -197,6 +200,158 @@ impl Frame {
             shift: absolute - start,
         };
         (Some(local), window)
+    }
+}
+
+/// The rays that go side by side, by eight.
+pub(super) const GROUPS: usize = 4;
+/// The rays that go side by side.
+pub(super) const PACKET: usize = 8 * GROUPS;
+
+/// Rays in kernel coordinates, by axis, in `f32`: for culling.
+#[derive(Clone, Debug)]
+pub(super) struct Side {
+    /// Eight each. Known within `error` and the rounding to nearest.
+    pub origin: [[[f32; 8]; 3]; GROUPS],
+    /// Rounded to nearest.
+    pub direction: [[[f32; 8]; 3]; GROUPS],
+    /// Where each ray's interval ends: an upper bound.
+    pub limit: [[f32; 8]; GROUPS],
+    /// As in [`LocalRay`].
+    pub factor: [f64; PACKET],
+    pub shift: [f64; PACKET],
+    /// The windows of ties.
+    pub window: [f64; PACKET],
+    /// An error radius for all.
+    pub error: f64,
+}
+
+impl Side {
+    pub const EMPTY: Side = Side {
+        origin: [[[0.0; 8]; 3]; GROUPS],
+        direction: [[[0.0; 8]; 3]; GROUPS],
+        limit: [[0.0; 8]; GROUPS],
+        factor: [0.0; PACKET],
+        shift: [0.0; PACKET],
+        window: [0.0; PACKET],
+        error: 0.0,
+    };
+
+    /// Puts a ray into its place.
+    pub fn set(&mut self, place: usize, ray: &LocalRay, end: f64) {
+        let (group, lane) = (place / 8 % GROUPS, place % 8);
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        for axis in 0..3 {
+            self.origin[group][axis][lane] = o[axis] as f32;
+            self.direction[group][axis][lane] = d[axis] as f32;
+        }
+        self.limit[group][lane] = ray.limit(end);
+        self.factor[place % PACKET] = ray.factor;
+        self.shift[place % PACKET] = ray.shift;
+        let error = ray.error.x + ray.error.y + ray.error.z;
+        self.error = if error > self.error { error } else { self.error };
+    }
+
+    /// Makes one place repeat another, but for its end, which comes before its start.
+    pub fn repeat(&mut self, place: usize, other: usize) {
+        let (group, lane) = (place / 8 % GROUPS, place % 8);
+        for axis in 0..3 {
+            self.origin[group][axis][lane] = self.origin[other / 8 % GROUPS][axis][other % 8];
+            self.direction[group][axis][lane] = self.direction[other / 8 % GROUPS][axis][other % 8];
+        }
+        self.limit[group][lane] = f32::NEG_INFINITY;
+    }
+
+    /// [`LocalRay::limit`] of this ray.
+    #[inline(always)]
+    pub fn limit_of(&self, place: usize, t: f64) -> f32 {
+        let place = place % PACKET;
+        at_least(t * self.factor[place] + self.shift[place])
+    }
+}
+
+impl Frame {
+    /// [`enter`](Frame::enter) for a packet, where that is simple: all rays legal, and near the scene. Whether it was.
+    /// Places without a ray repeat the last.
+    #[inline(always)]
+    pub fn enter_together<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        within: &[Interval],
+        side: &mut Side,
+    ) -> bool {
+        let last = rays.len().min(within.len()).wrapping_sub(1);
+        if last >= PACKET || !self.inhabited {
+            return false;
+        }
+        let center = [self.center.x, self.center.y, self.center.z];
+        let scale = lanes.splat4(exp2i(-self.exponent));
+        let (small, large) = (lanes.splat4(exp2i(-1000)), lanes.splat4(exp2i(1000)));
+        let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(exp2i(-24)));
+        let mut fine = 15;
+        for four in 0..PACKET / 4 {
+            let (group, lane) = (four / 2, four % 2 * 4);
+            let places = [4 * four, 4 * four + 1, 4 * four + 2, 4 * four + 3];
+            let [a, b, c, e] = places.map(|place| &rays[place.min(last)]);
+            let world = [
+                lanes.load4([a.origin.x, b.origin.x, c.origin.x, e.origin.x]),
+                lanes.load4([a.origin.y, b.origin.y, c.origin.y, e.origin.y]),
+                lanes.load4([a.origin.z, b.origin.z, c.origin.z, e.origin.z]),
+            ];
+            let d = [
+                lanes.load4([a.direction.x, b.direction.x, c.direction.x, e.direction.x]),
+                lanes.load4([a.direction.y, b.direction.y, c.direction.y, e.direction.y]),
+                lanes.load4([a.direction.z, b.direction.z, c.direction.z, e.direction.z]),
+            ];
+            let [a, b, c, e] = places.map(|place| &within[place.min(last)]);
+            let (min, max) =
+                (lanes.load4([a.min, b.min, c.min, e.min]), lanes.load4([a.max, b.max, c.max, e.max]));
+            // Zero times a number is zero, unless the number is infinite or NaN.
+            let mut nothing = zero;
+            let (mut largest, mut far) = (zero, zero);
+            let mut o = world;
+            for k in 0..3 {
+                nothing = lanes.add4(nothing, lanes.mul4(lanes.add4(world[k], d[k]), zero));
+                o[k] = lanes.mul4(lanes.sub4(world[k], lanes.splat4(center[k])), scale);
+                largest = lanes.max4(lanes.abs4(d[k]), largest);
+                far = lanes.max4(lanes.abs4(o[k]), far);
+            }
+            let power = lanes.binade4(largest);
+            let shrink = lanes.div4(one, power);
+            let factor = lanes.mul4(power, scale);
+            let absolute = lanes.mul4(lanes.add4(far, one), unit);
+            let start = lanes.sub4(lanes.mul4(min, factor), absolute);
+            let reach = lanes.add4(lanes.add4(lanes.abs4(start), lanes.abs4(start)), far);
+            fine &= lanes.le4(nothing, zero)
+                & lanes.le4(small, power)
+                & lanes.le4(power, large)
+                & lanes.le4(small, factor)
+                & lanes.le4(factor, large)
+                & lanes.le4(reach, lanes.splat4(8.0))
+                & lanes.lt4(min, max);
+            let shift = lanes.sub4(absolute, start);
+            // As `at_least`.
+            let limit = lanes.add4(lanes.mul4(max, factor), shift);
+            let limit = lanes.add4(limit, lanes.mul4(lanes.abs4(limit), lanes.splat4(exp2i(-23))));
+            for k in 0..3 {
+                let d = lanes.mul4(d[k], shrink);
+                let o = lanes.add4(o[k], lanes.mul4(d, start));
+                side.origin[group][k][lane..lane + 4].copy_from_slice(&lanes.round4(o));
+                side.direction[group][k][lane..lane + 4].copy_from_slice(&lanes.round4(d));
+            }
+            side.limit[group][lane..lane + 4].copy_from_slice(&lanes.round4(limit));
+            let place = 4 * four..4 * four + 4;
+            side.factor[place.clone()].copy_from_slice(&lanes.store4(factor));
+            side.shift[place.clone()].copy_from_slice(&lanes.store4(shift));
+            side.window[place].copy_from_slice(&lanes.store4(lanes.div4(absolute, factor)));
+        }
+        // At most 8 and 2 * 4 in each coordinate.
+        side.error = 3.0 * (16.0 * (8.0 * U) + exp2i(-97));
+        for place in last + 1..PACKET {
+            side.limit[place / 8][place % 8] = f32::NEG_INFINITY;
+        }
+        fine == 15
     }
 }
 

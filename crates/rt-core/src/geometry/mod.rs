@@ -24,7 +24,7 @@ mod stream;
 mod traverse;
 mod tree;
 
-use crate::kernel::{Lanes, Vectorized, vectorize};
+use crate::kernel::{Lanes, Vectorized, vec_on_large_pages, vectorize};
 use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
@@ -32,7 +32,7 @@ use core::ops::ControlFlow;
 pub use cube::DirectionCube;
 use frame::{Frame, LocalRay};
 pub use query::Screen;
-use query::{Any, Contest, Crossings, Nearest, Path, Query, Ruling};
+use query::{Any, Contest, Crossings, Nearest, Path, Query};
 use store::{Run, Store};
 use traverse::traverse;
 use tree::{Child, Tree};
@@ -89,13 +89,10 @@ impl GeometryBuilder {
     /// Prepares the set for rays.
     pub fn build(self) -> Geometry {
         let GeometryBuilder { shapes, plain } = self;
-        let bounds: Vec<Option<Aabb>> =
-            shapes.iter().map(|shape| shape.bounds().filter(frame::is_regular)).collect();
-        let regular: Vec<Aabb> = bounds.iter().flatten().copied().collect();
-        let frame = Frame::around(&regular);
+        let frame = Frame::around(shapes.len(), shapes.iter().map(regular_bounds));
         let mut geometry = Geometry { shapes, frame, plain, ..Geometry::default() };
         if !plain {
-            geometry.accelerate(&bounds);
+            geometry.accelerate();
         }
         geometry
     }
@@ -117,16 +114,16 @@ impl Geometry {
         self.tree.bytes() + self.store.bytes()
     }
 
-    fn accelerate(&mut self, bounds: &[Option<Aabb>]) {
-        let mut items = Vec::with_capacity(bounds.len());
+    fn accelerate(&mut self) {
+        let mut items = vec_on_large_pages(self.shapes.len());
         let mut apart: [Vec<u32>; Store::KINDS] = Default::default();
         let mut counts = [0; Store::KINDS];
-        for (object, (shape, bounds)) in self.shapes.iter().zip(bounds).enumerate() {
+        for (object, shape) in self.shapes.iter().enumerate() {
             let (object, kind) = (object as u32, Store::kind_of(shape));
             counts[kind as usize] += 1;
-            match bounds {
+            match regular_bounds(shape) {
                 Some(bounds) if items.len() < Child::CAPACITY => {
-                    let (min, max) = self.frame.outward(bounds);
+                    let (min, max) = self.frame.outward(&bounds);
                     items.push(Item { min, object, max, kind });
                 }
                 _ => apart[kind as usize].push(object),
@@ -255,6 +252,11 @@ impl Geometry {
     }
 }
 
+/// The box of a shape that can be put into the tree.
+fn regular_bounds(shape: &Shape) -> Option<Aabb> {
+    shape.bounds().filter(frame::is_regular)
+}
+
 /// Whether the ray can hit anything in the interval.
 #[inline(always)]
 fn is_legal(ray: &Ray, within: Interval) -> bool {
@@ -284,9 +286,9 @@ impl Vectorized for FindNearest<'_> {
             nearest.offer(from.object, hit);
         }
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
-        match nearest.ruling() {
-            Ruling::Clear(found) => found,
-            Ruling::Contested(limit) => geometry.decide(ray, within, limit, from),
+        match nearest.contested() {
+            None => nearest.best(),
+            Some(limit) => geometry.decide(ray, within, limit, from),
         }
     }
 }

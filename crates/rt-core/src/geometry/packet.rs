@@ -1,114 +1,245 @@
-//! Sixteen rays down the tree together, as a beam: for rays that go side by side, as a camera's do.
+//! Some rays down the tree together, as a beam: for rays that go side by side, as a camera's do.
 //!
 //! Inner boxes are tested once for all rays, leaves with each ray. Source of the idea: Reshetov, Soupikov, Hurley
 //! 2005, "Multi-level ray tracing algorithm" (doi:10.1145/1073204.1073329).
 
 use super::Geometry;
-use super::frame::LocalRay;
+use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
+use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::Child;
 use crate::Ray;
-use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Stack, at_least};
-
-/// The rays of a packet.
-pub(super) const PACKET: usize = 16;
+use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
+use crate::math::exp2i;
+use core::ops::Range;
 
 /// Fewer rays are not worth a beam.
 const FEWEST: u32 = 4;
 
 /// A beam visits as many boxes as cross it. Up to this many times those that cross a ray, it still costs less than its
-/// sixteen rays one by one: it decides time only.
+/// rays one by one: it decides time only.
 const MOST_SPREAD: f64 = 64.0;
 
-/// The rays of a packet in kernel coordinates, by axis. Places without a ray repeat another.
-pub(super) struct Places {
-    origin: [[f64; PACKET]; 3],
-    direction: [[f64; PACKET]; 3],
-    /// The largest error radius of all.
-    error: f64,
-}
+/// The same for a whole packet; a wider one is halved.
+const MOST_SPREAD_OF_WHOLE: f64 = 16.0;
 
 /// The rays of a packet and their queries.
 pub(super) struct Packet<'a, Q> {
     pub rays: &'a [Ray],
-    pub locals: [LocalRay; PACKET],
+    /// Places without a ray repeat another.
+    pub side: Side,
     pub queries: [Q; PACKET],
     /// The rays that take part, one bit each.
     pub active: u32,
 }
 
-/// Least and greatest, in halves, so that the compiler uses whole registers.
-#[inline(always)]
-fn span(values: &[f64; PACKET]) -> [f64; 2] {
-    let (mut least, mut most) = (*values, *values);
-    let mut half = PACKET / 2;
-    while half > 0 {
-        for i in 0..half {
-            least[i] = if least[i] < least[i + half] { least[i] } else { least[i + half] };
-            most[i] = if most[i] > most[i + half] { most[i] } else { most[i + half] };
-        }
-        half /= 2;
-    }
-    [least[0], most[0]]
+/// The bits of these groups' rays.
+fn mask_of(groups: &Range<usize>) -> u32 {
+    let below = |group: usize| ((1_u64 << (8 * group)) - 1) as u32;
+    below(groups.end) & !below(groups.start)
 }
 
-/// The greatest.
+/// The greatest of all.
 #[inline(always)]
-fn greatest(values: &[f32; PACKET]) -> f32 {
-    let mut most = *values;
-    let mut half = PACKET / 2;
-    while half > 0 {
-        for i in 0..half {
-            most[i] = if most[i] > most[i + half] { most[i] } else { most[i + half] };
-        }
-        half /= 2;
+fn greatest<L: Lanes>(lanes: L, all: &[[f32; 8]; GROUPS]) -> f32 {
+    let mut most = lanes.load(&all[0]);
+    for group in &all[1..] {
+        most = lanes.max(most, lanes.load(group));
     }
-    most[0]
+    lanes.greatest(most)
+}
+
+/// The beam of a packet's rays.
+pub(super) struct Bundle {
+    pub shape: BeamShape,
+    /// The largest |coordinate| of the origins.
+    far: f32,
+    /// Where each ray begins, in depth of the beam, and how fast it gets deeper.
+    start: [[f32; 8]; GROUPS],
+    depth: [[f32; 8]; GROUPS],
+    /// The rays it holds, by eight.
+    groups: Range<usize>,
+}
+
+/// The sums and products of a ray's depth err by less than 2^-22 of their parts.
+const STEP: f32 = 1.0 / 1_048_576.0;
+
+impl Bundle {
+    /// An upper bound of the depth at which a ray ends.
+    #[inline(always)]
+    fn end(&self, i: usize, limit: f32) -> f32 {
+        let along = limit * self.depth[i / 8 % GROUPS][i % 8];
+        let (more, less) = (along * (1.0 + STEP), along * (1.0 - STEP));
+        (if more > less { more } else { less })
+            + (self.start[i / 8 % GROUPS][i % 8] + (self.far + 1.0) * STEP)
+    }
+
+    /// The same for eight rays.
+    #[inline(always)]
+    fn ends<L: Lanes>(&self, lanes: L, group: usize, limit: &[f32; 8]) -> [f32; 8] {
+        let along = lanes.mul(lanes.load(limit), lanes.load(&self.depth[group % GROUPS]));
+        let along =
+            lanes.max(lanes.mul(along, lanes.splat(1.0 + STEP)), lanes.mul(along, lanes.splat(1.0 - STEP)));
+        let start = lanes.add(lanes.load(&self.start[group % GROUPS]), lanes.splat((self.far + 1.0) * STEP));
+        lanes.store(lanes.add(along, start))
+    }
+}
+
+/// Least and greatest so far, in each lane.
+#[derive(Clone, Copy)]
+struct Span<L: Lanes>(L::F, L::F);
+
+impl<L: Lanes> Span<L> {
+    #[inline(always)]
+    fn new(lanes: L) -> Self {
+        Span(lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY))
+    }
+
+    #[inline(always)]
+    fn add(&mut self, lanes: L, x: L::F) {
+        (self.0, self.1) = (lanes.min(self.0, x), lanes.max(self.1, x));
+    }
+
+    #[inline(always)]
+    fn ends(&self, lanes: L) -> [f32; 2] {
+        [lanes.least(self.0), lanes.greatest(self.1)]
+    }
+}
+
+/// The beam that holds the rays, if they go side by side closely enough. `box_size` is that of a typical shape.
+///
+/// In `f32`. With m the largest |coordinate| of an origin and v = 2^-24: a slope is the quotient of two rounded numbers,
+/// made in two steps, and errs by 4.1 v of itself. A position is `o - s (z - plane)` with origins that err by v m, and
+/// |z - plane| <= 2 m: it errs by less than 2 v m + 15 v |s| m, less than 2^-20 m (1 + |s|).
+#[inline(always)]
+fn bundle<L: Lanes>(
+    lanes: L,
+    side: &Side,
+    groups: Range<usize>,
+    box_size: f64,
+    most_spread: f64,
+) -> Option<Bundle> {
+    let first = groups.start % GROUPS;
+    let [x, y, z] = [0, 1, 2].map(|k| side.direction[first][k][0].abs());
+    let axis = if x >= y && x >= z {
+        0
+    } else if y >= z {
+        1
+    } else {
+        2
+    };
+    let sign = 1.0_f32.copysign(side.direction[first][axis][0]);
+    let signs = lanes.splat(sign);
+    let (mut depth, mut start) = ([[0.0; 8]; GROUPS], [[0.0; 8]; GROUPS]);
+    let mut inverse = [lanes.splat(0.0); GROUPS];
+    let (mut depths, mut planes) = (Span::new(lanes), Span::new(lanes));
+    for (origin, direction) in side.origin.iter().zip(&side.direction).skip(first).take(groups.len()) {
+        depths.add(lanes, lanes.mul(lanes.load(&direction[axis]), signs));
+        planes.add(lanes, lanes.load(&origin[axis]));
+    }
+    // Not for slopes beyond 4, nor for rays without a place.
+    if !(depths.ends(lanes)[0] >= 0.5 && side.error < 1.0) {
+        return None;
+    }
+    let [least, most] = planes.ends(lanes);
+    let plane = if sign > 0.0 { least } else { most };
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    let mut far = larger(least.abs(), most.abs());
+    for group in groups.clone() {
+        let group = group % GROUPS;
+        let along = lanes.mul(lanes.load(&side.direction[group][axis]), signs);
+        let begin = lanes.sub(lanes.load(&side.origin[group][axis]), lanes.splat(plane));
+        inverse[group] = lanes.inverse(along);
+        depth[group] = lanes.store(along);
+        start[group] = lanes.store(lanes.mul(begin, signs));
+    }
+    let (mut position, mut slope) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
+    let mut spread = 1.0;
+    for i in 0..2 {
+        let k = (axis + 1 + i) % 3;
+        let (mut origins, mut slopes, mut positions) = (Span::new(lanes), Span::new(lanes), Span::new(lanes));
+        for group in groups.clone() {
+            let group = group % GROUPS;
+            let origin = lanes.load(&side.origin[group][k]);
+            let slope = lanes.mul(lanes.load(&side.direction[group][k]), inverse[group]);
+            origins.add(lanes, origin);
+            slopes.add(lanes, slope);
+            positions.add(lanes, lanes.sub(origin, lanes.mul(slope, lanes.load(&start[group]))));
+        }
+        let ([a, b], [c, d]) = (positions.ends(lanes), slopes.ends(lanes));
+        let [least, most] = origins.ends(lanes);
+        far = larger(far, larger(least.abs(), most.abs()));
+        position[i] = [f64::from(a), f64::from(b)];
+        slope[i] = [f64::from(c), f64::from(d)];
+        // Where the beam is half a scene deep.
+        spread *= 1.0 + f64::from((b - a) + (d - c) * 0.5) / box_size;
+    }
+    let shape = BeamShape {
+        axis,
+        sign: f64::from(sign),
+        plane: f64::from(plane),
+        position,
+        slope,
+        error: side.error + f64::from(far) * exp2i(-20),
+    };
+    (spread <= most_spread).then_some(Bundle { shape, far, start, depth, groups })
 }
 
 impl<Q: Query> Packet<'_, Q> {
-    /// The rays by axis, if there are enough.
+    /// Shows each ray's query the shapes that the ray may hit, if there are enough rays, and they go side by side closely
+    /// enough, all or one half. Returns those for which that was so, one bit each.
     #[inline(always)]
-    pub fn places(&self) -> Option<Places> {
-        if self.active.count_ones() < FEWEST {
-            return None;
-        }
-        let any = self.active.trailing_zeros() as usize & (PACKET - 1);
-        let mut places = Places { origin: [[0.0; PACKET]; 3], direction: [[0.0; PACKET]; 3], error: 0.0 };
-        for i in 0..PACKET {
-            let local = &self.locals[if self.active >> i & 1 == 1 { i } else { any }];
-            for axis in 0..3 {
-                places.origin[axis][i] = local.origin[axis];
-                places.direction[axis][i] = local.direction[axis];
+    pub fn search<L: Lanes>(&mut self, lanes: L, geometry: &Geometry) -> u32 {
+        let active = self.active;
+        let mut rest = [0..GROUPS, 0..0, 0..0];
+        let mut left = 1;
+        let mut done = 0;
+        while left > 0 {
+            left -= 1;
+            let groups = rest[left].clone();
+            let members = active & mask_of(&groups);
+            if members.count_ones() < FEWEST {
+                continue;
             }
-            let error = local.error.x + local.error.y + local.error.z;
-            places.error = if error > places.error { error } else { places.error };
+            let whole = groups.len() == GROUPS;
+            let most_spread = if whole { MOST_SPREAD_OF_WHOLE } else { MOST_SPREAD };
+            match bundle(lanes, &self.side, groups, geometry.tree.box_size, most_spread) {
+                Some(bundle) => {
+                    done |= members;
+                    self.active = members;
+                    self.traverse(lanes, geometry, &bundle);
+                }
+                None if whole => {
+                    rest = [0..GROUPS / 2, GROUPS / 2..GROUPS, 0..0];
+                    left = 2;
+                }
+                None => {}
+            }
         }
-        Some(places)
+        done
     }
 
     /// Shows each ray's query the shapes that the ray may hit.
     #[inline(always)]
-    pub fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, places: &Places, shape: &BeamShape) {
-        let beam = Beam::new(lanes, shape);
-        let rays = [0, 8].map(|first| EightRays::new(&places.origin, &places.direction, first));
+    fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, bundle: &Bundle) {
+        let beam = Beam::new(lanes, &bundle.shape);
+        let mut rays = [EightRays::EMPTY; GROUPS];
         // The end of each ray, and that of the beam at the same place.
-        let mut limits = [[f32::NEG_INFINITY; 8]; 2];
-        let mut depths = [f32::NEG_INFINITY; PACKET];
-        for i in 0..PACKET {
-            if self.active >> i & 1 == 1 {
-                (limits[i / 8][i % 8], depths[i]) = self.ends(i, shape);
-            }
+        let mut limits = [[f32::NEG_INFINITY; 8]; GROUPS];
+        let mut depths = [[f32::NEG_INFINITY; 8]; GROUPS];
+        for group in bundle.groups.clone() {
+            let group = group % GROUPS;
+            rays[group] = EightRays::new(lanes, &self.side.origin[group], &self.side.direction[group]);
+            limits[group] = self.side.limit[group];
+            depths[group] = bundle.ends(lanes, group, &limits[group]);
         }
-        let [least, most] = places.origin.iter().map(span).fold([0.0, 0.0], |[a, b]: [f64; 2], [c, d]| {
-            [if c < a { c } else { a }, if d > b { d } else { b }]
-        });
-        let far = if most > -least { most } else { -least };
-        let pad = at_least((far + 1.0) * crate::math::exp2i(-21) + shape.error);
-        let mut end = greatest(&depths);
+        let pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-21) + self.side.error);
+        let ball_pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-18) + self.side.error);
+        let mut end = greatest(lanes, &depths);
 
-        let mut stack = Stack::<STACK>::default();
+        let mut room = Room::<STACK>::default();
+        let mut stack = room.enter();
         let mut indices = 0..geometry.tree.roots;
         'node: loop {
             let base = stack.len();
@@ -137,22 +268,34 @@ impl<Q: Query> Packet<'_, Q> {
                 let (node, lane) = child.as_place();
                 let Some(node) = geometry.tree.nodes.get(node) else { continue };
                 let (min, max) = node.boxes.corners(lane);
-                let low = rays[0].test(lanes, min, max, pad, &limits[0]);
-                let high = rays[1].test(lanes, min, max, pad, &limits[1]);
-                let mut mask = (low | high << 8) & self.active;
+                let run = node.children[lane].run();
+                let ball = run.kind == Store::BALL && run.count == 1;
+                let mut mask = 0;
+                for group in bundle.groups.clone() {
+                    let group = group % GROUPS;
+                    let (rays, limits) = (&rays[group], &limits[group]);
+                    let met = if ball {
+                        rays.test_ball(lanes, min, max, ball_pad, limits)
+                    } else {
+                        rays.test(lanes, min, max, pad, limits)
+                    };
+                    mask |= met << (8 * group);
+                }
+                mask &= self.active;
                 let mut changed = false;
                 while mask != 0 {
                     let i = mask.trailing_zeros() as usize & (PACKET - 1);
                     mask &= mask - 1;
                     let Some(ray) = self.rays.get(i) else { continue };
                     let before = self.queries[i].limit();
-                    let flow = geometry.store.visit(node.children[lane].run(), ray, &mut self.queries[i]);
+                    let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
                     if flow.is_break() {
                         self.active &= !(1 << i);
-                        (limits[i / 8][i % 8], depths[i]) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
+                        (limits[i / 8][i % 8], depths[i / 8][i % 8]) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
                         changed = true;
                     } else if self.queries[i].limit() != before {
-                        (limits[i / 8][i % 8], depths[i]) = self.ends(i, shape);
+                        let limit = self.side.limit_of(i, self.queries[i].limit());
+                        (limits[i / 8][i % 8], depths[i / 8][i % 8]) = (limit, bundle.end(i, limit));
                         changed = true;
                     }
                 }
@@ -160,61 +303,10 @@ impl<Q: Query> Packet<'_, Q> {
                     if self.active == 0 {
                         return;
                     }
-                    end = greatest(&depths);
+                    end = greatest(lanes, &depths);
                 }
             }
             return;
         }
-    }
-
-    /// Where the query of a ray ends: along the ray, and in depth of the beam.
-    #[inline(always)]
-    fn ends(&self, i: usize, shape: &BeamShape) -> (f32, f32) {
-        let local = &self.locals[i];
-        let limit = local.limit(self.queries[i].limit());
-        let start = (local.origin[shape.axis] - shape.plane) * shape.sign;
-        let depth = start + f64::from(limit) * (local.direction[shape.axis] * shape.sign);
-        (limit, at_least(depth + shape.error))
-    }
-}
-
-impl Places {
-    /// The beam that holds the rays, if they go side by side closely enough. `box_size` is that of a typical shape.
-    #[inline(always)]
-    pub fn beam(&self, box_size: f64) -> Option<BeamShape> {
-        let size = self.direction.map(|d| d[0].abs());
-        let axis = if size[0] >= size[1] && size[0] >= size[2] {
-            0
-        } else if size[1] >= size[2] {
-            1
-        } else {
-            2
-        };
-        let sign = 1.0_f64.copysign(self.direction[axis][0]);
-        let depth = self.direction[axis].map(|d| d * sign);
-        // Not for slopes beyond 4, nor for rays without a place.
-        if !(span(&depth)[0] >= 0.5 && self.error < 1.0) {
-            return None;
-        }
-        let inverse = depth.map(|d| 1.0 / d);
-        let [least, most] = span(&self.origin[axis]);
-        let plane = if sign > 0.0 { least } else { most };
-        let (mut position, mut slope) = ([[0.0; 2]; 2], [[0.0; 2]; 2]);
-        let mut spread = 1.0;
-        for i in 0..2 {
-            let k = (axis + 1 + i) % 3;
-            let slopes: [f64; PACKET] = core::array::from_fn(|j| self.direction[k][j] * inverse[j]);
-            let positions: [f64; PACKET] = core::array::from_fn(|j| {
-                self.origin[k][j] - slopes[j] * ((self.origin[axis][j] - plane) * sign)
-            });
-            (position[i], slope[i]) = (span(&positions), span(&slopes));
-            // Where the beam is half a scene deep.
-            let ([a, b], [c, d]) = (position[i], slope[i]);
-            spread *= 1.0 + ((b - a) + (d - c) * 0.5) / box_size;
-        }
-        // These quotients and products round by a few u of numbers below 4 * 16 (rays begin within 8 of the scene):
-        // 2^-40 is ample, and far below the resolution of f32.
-        let error = self.error + crate::math::exp2i(-40);
-        (spread <= MOST_SPREAD).then_some(BeamShape { axis, sign, plane, position, slope, error })
     }
 }

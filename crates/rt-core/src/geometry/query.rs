@@ -28,14 +28,6 @@ pub(super) struct Nearest {
     runner_up: f64,
 }
 
-/// The outcome of [`Nearest`].
-pub(super) enum Ruling {
-    /// Clear, or nothing found.
-    Clear(Option<Found>),
-    /// Several objects were hit before this parameter, too close for their order to be sure.
-    Contested(f64),
-}
-
 impl Nearest {
     #[inline(always)]
     pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
@@ -64,13 +56,16 @@ impl Nearest {
         }
     }
 
-    /// What was found.
+    /// What was found, unless that is [contested](Nearest::contested).
     #[inline(always)]
-    pub fn ruling(&self) -> Ruling {
-        match self.best {
-            Some(_) if self.runner_up < self.limit => Ruling::Contested(self.limit),
-            best => Ruling::Clear(best),
-        }
+    pub fn best(&self) -> Option<Found> {
+        self.best
+    }
+
+    /// Where the hits end of which several objects have one, too close for their order to be sure.
+    #[inline(always)]
+    pub fn contested(&self) -> Option<f64> {
+        (self.best.is_some() && self.runner_up < self.limit).then_some(self.limit)
     }
 }
 

@@ -73,6 +73,9 @@ macro_rules! store {
         }
 
         impl Store {
+            /// The kind of spheres.
+            pub const BALL: u32 = 0;
+
             /// The number of kinds.
             pub const KINDS: usize = [$($index),*].len();
 

@@ -7,7 +7,7 @@ use super::query::Query;
 use super::traverse::{STACK, descend, unpack};
 use super::tree::Child;
 use crate::Ray;
-use crate::kernel::{Lanes, SlabRay, Stack};
+use crate::kernel::{Lanes, Room, SlabRay};
 
 /// A ray on its way down the tree.
 struct Flight<'a, L: Lanes, Q> {
@@ -18,7 +18,7 @@ struct Flight<'a, L: Lanes, Q> {
     query: Q,
     limit: f32,
     child: Child,
-    stack: Stack<STACK>,
+    room: Room<STACK>,
 }
 
 impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
@@ -32,19 +32,20 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
             local,
             query,
             child: Child::node(0),
-            stack: Stack::default(),
+            room: Room::default(),
         }
     }
 
     /// Visits one node or leaf and asks for the memory of the next; false at the end.
     #[inline(always)]
     fn advance(&mut self, lanes: L, geometry: &Geometry) -> bool {
+        let mut stack = self.room.enter();
         let next = match self.child.as_node() {
-            Some(index) => geometry
-                .tree
-                .nodes
-                .get(index)
-                .and_then(|node| descend(lanes, node, &self.slab, self.limit, &mut self.stack)),
+            Some(index) => {
+                let tree = &geometry.tree;
+                let node = tree.nodes.get(index);
+                node.and_then(|node| descend(lanes, tree, node, &self.slab, self.limit, &mut stack))
+            }
             None => {
                 if geometry.store.visit(self.child.run(), self.ray, &mut self.query).is_break() {
                     return false;
@@ -56,7 +57,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
         self.child = match next {
             Some(next) => next,
             None => loop {
-                let Some(top) = self.stack.pop() else {
+                let Some(top) = stack.pop() else {
                     return false;
                 };
                 let (at, child) = unpack(top);
@@ -65,6 +66,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
                 }
             },
         };
+        stack.leave();
         match self.child.as_node() {
             Some(index) => {
                 if let Some(node) = geometry.tree.nodes.get(index) {

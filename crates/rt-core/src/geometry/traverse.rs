@@ -6,7 +6,7 @@ use super::query::Query;
 use super::store::Store;
 use super::tree::{Child, Node, Tree};
 use crate::Ray;
-use crate::kernel::{Lanes, SlabRay, Stack};
+use crate::kernel::{Lanes, Room, SlabRay, Stack};
 use core::ops::ControlFlow;
 
 /// Each level leaves at most seven children behind.
@@ -30,11 +30,17 @@ pub(super) fn unpack(entry: u64) -> (f32, Child) {
 #[inline(always)]
 pub(super) fn descend<L: Lanes>(
     lanes: L,
+    tree: &Tree,
     node: &Node,
     slab: &SlabRay<L>,
     limit: f32,
     stack: &mut Stack<STACK>,
 ) -> Option<Child> {
+    let fetch = |child: Child| {
+        if let Some(node) = tree.nodes.get(child.0 as usize) {
+            lanes.prefetch(node);
+        }
+    };
     let (mut mask, at) = slab.test(lanes, &node.boxes, lanes.splat(limit));
     if mask == 0 {
         return None;
@@ -50,6 +56,8 @@ pub(super) fn descend<L: Lanes>(
     if far < near {
         (near, far) = (far, near);
     }
+    fetch(node.children[first]);
+    fetch(node.children[second]);
     mask &= mask - 1;
     let base = stack.len();
     stack.push(far);
@@ -57,6 +65,7 @@ pub(super) fn descend<L: Lanes>(
         let i = mask.trailing_zeros() as usize & 7;
         mask &= mask - 1;
         let mut next = entry(at[i], node.children[i]);
+        fetch(node.children[i]);
         if next < near {
             (near, next) = (next, near);
         }
@@ -78,7 +87,8 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     let slab = SlabRay::new(lanes, local.origin, local.error, local.direction);
     let mut end = query.limit();
     let mut limit = local.limit(end);
-    let mut stack = Stack::<STACK>::default();
+    let mut room = Room::<STACK>::default();
+    let mut stack = room.enter();
     let mut next = None;
     if tree.roots == 1 {
         next = Some(Child::node(0));
@@ -111,7 +121,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
         };
         next = match child.as_node() {
             Some(index) => {
-                tree.nodes.get(index).and_then(|node| descend(lanes, node, &slab, limit, &mut stack))
+                tree.nodes.get(index).and_then(|node| descend(lanes, tree, node, &slab, limit, &mut stack))
             }
             None => {
                 store.visit(child.run(), ray, query)?;

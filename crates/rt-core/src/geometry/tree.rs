@@ -86,6 +86,6 @@ pub(super) struct Tree {
 impl Tree {
     /// The bytes of memory in use.
     pub fn bytes(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>()
+        self.nodes.len() * size_of::<Node>()
     }
 }

@@ -1,6 +1,7 @@
 //! Eight lanes with AVX2 and FMA.
 #![cfg(all(target_arch = "x86_64", feature = "std"))]
 
+use super::lanes::{EXPONENT, LEAST};
 use super::{Lanes, Vectorized};
 use core::arch::x86_64::*;
 
@@ -12,7 +13,7 @@ pub struct Avx2Lanes(());
 ///
 /// # Safety
 /// The machine must have AVX2, FMA, BMI1, BMI2 and LZCNT.
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn run<V: Vectorized>(task: V) -> V::Output {
     task.run(Avx2Lanes(()))
 }
@@ -21,6 +22,7 @@ pub(super) fn run<V: Vectorized>(task: V) -> V::Output {
 // AVX2 and FMA. The loads and stores are unaligned ones on references to arrays of the right size.
 impl Lanes for Avx2Lanes {
     type F = __m256;
+    type D = __m256d;
     const FUSED: bool = true;
     #[inline(always)]
     fn splat(self, x: f32) -> __m256 {
@@ -73,6 +75,107 @@ impl Lanes for Avx2Lanes {
     fn le(self, a: __m256, b: __m256) -> u32 {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
+    }
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_div_ps(a, b) }
+    }
+    #[inline(always)]
+    fn inverse(self, a: __m256) -> __m256 {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let sign = _mm256_set1_ps(-0.0);
+            let size = _mm256_max_ps(_mm256_andnot_ps(sign, a), _mm256_set1_ps(LEAST));
+            _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_or_ps(size, _mm256_and_ps(sign, a)))
+        }
+    }
+    #[inline(always)]
+    fn least(self, a: __m256) -> f32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let a = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+            let a = _mm_min_ps(a, _mm_movehl_ps(a, a));
+            _mm_cvtss_f32(_mm_min_ss(a, _mm_movehdup_ps(a)))
+        }
+    }
+    #[inline(always)]
+    fn greatest(self, a: __m256) -> f32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let a = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+            let a = _mm_max_ps(a, _mm_movehl_ps(a, a));
+            _mm_cvtss_f32(_mm_max_ss(a, _mm_movehdup_ps(a)))
+        }
+    }
+    #[inline(always)]
+    fn splat4(self, x: f64) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_set1_pd(x) }
+    }
+    #[inline(always)]
+    fn load4(self, [a, b, c, d]: [f64; 4]) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_setr_pd(a, b, c, d) }
+    }
+    #[inline(always)]
+    fn store4(self, x: __m256d) -> [f64; 4] {
+        let mut to = [0.0; 4];
+        // SAFETY: `self` proves AVX2; the pointer comes from an array of four f64.
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), x) };
+        to
+    }
+    #[inline(always)]
+    fn round4(self, x: __m256d) -> [f32; 4] {
+        let mut to = [0.0; 4];
+        // SAFETY: `self` proves AVX2; the pointer comes from an array of four f32.
+        unsafe { _mm_storeu_ps(to.as_mut_ptr(), _mm256_cvtpd_ps(x)) };
+        to
+    }
+    #[inline(always)]
+    fn add4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_add_pd(a, b) }
+    }
+    #[inline(always)]
+    fn sub4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_sub_pd(a, b) }
+    }
+    #[inline(always)]
+    fn mul4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_mul_pd(a, b) }
+    }
+    #[inline(always)]
+    fn div4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_div_pd(a, b) }
+    }
+    #[inline(always)]
+    fn max4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_max_pd(a, b) }
+    }
+    #[inline(always)]
+    fn abs4(self, a: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) }
+    }
+    #[inline(always)]
+    fn binade4(self, a: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_and_pd(a, _mm256_set1_pd(f64::from_bits(EXPONENT))) }
+    }
+    #[inline(always)]
+    fn le4(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32 }
+    }
+    #[inline(always)]
+    fn lt4(self, a: __m256d, b: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32 }
     }
     #[inline(always)]
     fn prefetch<T>(self, value: &T) {

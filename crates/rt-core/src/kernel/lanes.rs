@@ -30,6 +30,44 @@ pub trait Lanes: Copy {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// `a / b`.
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `1 / a`, for |a| < 2^-100 that of 2^-100 with its sign.
+    fn inverse(self, a: Self::F) -> Self::F;
+    /// The least lane; any of the others when some are NaN.
+    fn least(self, a: Self::F) -> f32;
+    /// The greatest lane; any of the others when some are NaN.
+    fn greatest(self, a: Self::F) -> f32;
+
+    /// Four `f64`. Whatever is computed with them is the same bits in all implementations.
+    type D: Copy;
+    /// The same value in all lanes.
+    fn splat4(self, x: f64) -> Self::D;
+    /// The lanes of an array.
+    fn load4(self, from: [f64; 4]) -> Self::D;
+    /// The lanes as an array.
+    fn store4(self, x: Self::D) -> [f64; 4];
+    /// The lanes rounded to nearest.
+    fn round4(self, x: Self::D) -> [f32; 4];
+    /// `a + b`.
+    fn add4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a - b`.
+    fn sub4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a * b`.
+    fn mul4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `a / b`.
+    fn div4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `|a|`.
+    fn abs4(self, a: Self::D) -> Self::D;
+    /// `if a > b { a } else { b }`: `b` when either is NaN.
+    fn max4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// The power of two with the exponent of `a`, which is positive: 0 for subnormal numbers, infinite for NaN.
+    fn binade4(self, a: Self::D) -> Self::D;
+    /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
+    fn le4(self, a: Self::D, b: Self::D) -> u32;
+    /// The lanes in which `a < b`, one bit each, lane 0 the lowest.
+    fn lt4(self, a: Self::D, b: Self::D) -> u32;
+
     /// Asks for the cache lines of a value that will be needed soon. Has no effect but on time.
     fn prefetch<T>(self, value: &T);
 }
@@ -45,6 +83,12 @@ pub trait Vectorized {
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
+/// 2^-100.
+pub(super) const LEAST: f32 = crate::math::exp2i(-100) as f32;
+
+/// The bits of an `f64` that hold its exponent.
+pub(super) const EXPONENT: u64 = 0x7ff << 52;
+
 /// Eight lanes without any assumption about the machine.
 #[derive(Clone, Copy, Debug)]
 pub struct PortableLanes;
@@ -54,8 +98,14 @@ fn each(a: [f32; 8], b: [f32; 8], f: impl Fn(f32, f32) -> f32) -> [f32; 8] {
     core::array::from_fn(|i| f(a[i], b[i]))
 }
 
+#[inline(always)]
+fn each4(a: [f64; 4], b: [f64; 4], f: impl Fn(f64, f64) -> f64) -> [f64; 4] {
+    core::array::from_fn(|i| f(a[i], b[i]))
+}
+
 impl Lanes for PortableLanes {
     type F = [f32; 8];
+    type D = [f64; 4];
     const FUSED: bool = false;
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
@@ -96,6 +146,74 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn le(self, a: [f32; 8], b: [f32; 8]) -> u32 {
         (0..8).fold(0, |mask, i| mask | (((a[i] <= b[i]) as u32) << i))
+    }
+    #[inline(always)]
+    fn div(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(a, b, |a, b| a / b)
+    }
+    #[inline(always)]
+    fn inverse(self, a: [f32; 8]) -> [f32; 8] {
+        a.map(|a| 1.0 / (if a.abs() > LEAST { a.abs() } else { LEAST }).copysign(a))
+    }
+    #[inline(always)]
+    fn least(self, a: [f32; 8]) -> f32 {
+        a.into_iter().fold(f32::INFINITY, |least, a| if a < least { a } else { least })
+    }
+    #[inline(always)]
+    fn greatest(self, a: [f32; 8]) -> f32 {
+        a.into_iter().fold(f32::NEG_INFINITY, |most, a| if a > most { a } else { most })
+    }
+    #[inline(always)]
+    fn splat4(self, x: f64) -> [f64; 4] {
+        [x; 4]
+    }
+    #[inline(always)]
+    fn load4(self, from: [f64; 4]) -> [f64; 4] {
+        from
+    }
+    #[inline(always)]
+    fn store4(self, x: [f64; 4]) -> [f64; 4] {
+        x
+    }
+    #[inline(always)]
+    fn round4(self, x: [f64; 4]) -> [f32; 4] {
+        x.map(|x| x as f32)
+    }
+    #[inline(always)]
+    fn add4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| a + b)
+    }
+    #[inline(always)]
+    fn sub4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| a - b)
+    }
+    #[inline(always)]
+    fn mul4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn div4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| a / b)
+    }
+    #[inline(always)]
+    fn abs4(self, a: [f64; 4]) -> [f64; 4] {
+        a.map(f64::abs)
+    }
+    #[inline(always)]
+    fn max4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn binade4(self, a: [f64; 4]) -> [f64; 4] {
+        a.map(|a| f64::from_bits(a.to_bits() & EXPONENT))
+    }
+    #[inline(always)]
+    fn le4(self, a: [f64; 4], b: [f64; 4]) -> u32 {
+        (0..4).fold(0, |mask, i| mask | (((a[i] <= b[i]) as u32) << i))
+    }
+    #[inline(always)]
+    fn lt4(self, a: [f64; 4], b: [f64; 4]) -> u32 {
+        (0..4).fold(0, |mask, i| mask | (((a[i] < b[i]) as u32) << i))
     }
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}

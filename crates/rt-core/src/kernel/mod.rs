@@ -18,7 +18,7 @@ pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::vec_on_large_pages;
 pub use packet::{Beam, BeamShape, EightRays};
-pub use stack::Stack;
+pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Task, run, run_portable};
 
 /// Runs the computation with the widest lanes of the [`level`] in use.

@@ -1,37 +1,50 @@
-//! Several rays against one box, and a beam that holds them against eight.
+//! Several rays against one box or ball, and a beam that holds them against eight.
 
 use super::{Boxes, Lanes, Row};
 
-/// Eight rays side by side against one box.
-///
-/// Per axis, `((x -+ pad) - o) * r` with `o` and `d` rounded to nearest; `pad` is at least 2^-22 of the largest
-/// |coordinate| of the origins and the scene (1), plus the error radius, so that it outweighs the roundings of `o` and
-/// of the difference (3 * 2^-24). Those of `d`, `r = 1 / d` and the product, 3 * 2^-24 of the parameter, are outweighed
-/// by a factor of 1 -+ 2^-22 on entry and exit. Either end of a slab may come first: rays of all signs go side by side.
+/// Eight rays side by side against one box or one ball.
 #[derive(Clone, Copy, Debug)]
 pub struct EightRays {
     origin: [[f32; 8]; 3],
+    direction: [[f32; 8]; 3],
     inverse: [[f32; 8]; 3],
+    /// `1 / |d|^2`.
+    inverse_square: [f32; 8],
 }
 
 impl EightRays {
-    /// The rays with these origins and directions, by axis, beginning at `first`.
+    /// No rays in particular.
+    pub const EMPTY: EightRays = EightRays {
+        origin: [[0.0; 8]; 3],
+        direction: [[1.0; 8]; 3],
+        inverse: [[1.0; 8]; 3],
+        inverse_square: [1.0; 8],
+    };
+
+    /// The rays with these origins and directions, rounded to nearest, by axis. The largest coordinate of a direction is
+    /// in [1, 2].
     #[inline(always)]
-    pub fn new<const N: usize>(origin: &[[f64; N]; 3], direction: &[[f64; N]; 3], first: usize) -> Self {
-        const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
-        let mut rays = EightRays { origin: [[0.0; 8]; 3], inverse: [[1.0; 8]; 3] };
-        for axis in 0..3 {
-            let (o, d) = (&origin[axis][first..], &direction[axis][first..]);
-            for (lane, (o, d)) in o.iter().zip(d).take(8).enumerate() {
-                let d = *d as f32;
-                rays.origin[axis][lane] = *o as f32;
-                rays.inverse[axis][lane] = 1.0 / (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
-            }
+    pub fn new<L: Lanes>(lanes: L, origin: &[[f32; 8]; 3], direction: &[[f32; 8]; 3]) -> Self {
+        let [x, y, z] = direction;
+        let [x, y, z] = [lanes.load(x), lanes.load(y), lanes.load(z)];
+        let square = lanes.add(lanes.add(lanes.mul(x, x), lanes.mul(y, y)), lanes.mul(z, z));
+        let inverse = [lanes.inverse(x), lanes.inverse(y), lanes.inverse(z)];
+        let [a, b, c] = inverse;
+        EightRays {
+            origin: *origin,
+            direction: *direction,
+            inverse: [lanes.store(a), lanes.store(b), lanes.store(c)],
+            inverse_square: lanes.store(lanes.inverse(square)),
         }
-        rays
     }
 
     /// The rays that may meet the box, grown by `pad`, between 0 and their limit.
+    ///
+    /// Per axis, `((x -+ pad) - o) * r` with `o` and `d` rounded to nearest; `pad` is at least 2^-22 of the largest
+    /// |coordinate| of the origins and the scene (1), plus the error radius, so that it outweighs the roundings of `o` and
+    /// of the difference (3 * 2^-24). Those of `d`, `r = 1 / d` and the product, 3 * 2^-24 of the parameter, are outweighed
+    /// by a factor of 1 -+ 2^-22 on entry and exit. Either end of a slab may come first: rays of all signs go side by
+    /// side.
     #[inline(always)]
     pub fn test<L: Lanes>(&self, lanes: L, min: [f32; 3], max: [f32; 3], pad: f32, limit: &[f32; 8]) -> u32 {
         const SLACK: f32 = 1.0 / 4_194_304.0;
@@ -48,6 +61,46 @@ impl EightRays {
         let entry = lanes.mul(entry, lanes.splat(1.0 - SLACK));
         let exit = lanes.min(lanes.mul(exit, lanes.splat(1.0 + SLACK)), lanes.load(limit));
         lanes.le(entry, exit)
+    }
+
+    /// The rays that may meet the ball that touches all sides of the box, grown by `pad`, between 0 and their limit.
+    ///
+    /// With `w` from the origin to the centre and `t = w.d / |d|^2`, the ray is nearest to the centre at `w - t d`. With
+    /// m the largest |coordinate| of the origins, 1 that of the scene, and v = 2^-24: `w` errs by 2 v (1 + m) in a coordinate,
+    /// of which the centre's share is what rounding did to the box; it is at most 1.8 (1 + m) long. `t |d|` errs by 8 v |w| and
+    /// the error of `w`; both and the roundings of `d`, of the product and of the difference move the nearest place by
+    /// less than 40 v (1 + m) in all. `pad` is at least 64 v (1 + m) = 2^-18 (1 + m), plus the error radius; squares err by
+    /// 6 v of themselves. The parameters inside are within the radius of `t`, as |d| >= 1, and err by less than a pad.
+    #[inline(always)]
+    pub fn test_ball<L: Lanes>(
+        &self,
+        lanes: L,
+        min: [f32; 3],
+        max: [f32; 3],
+        pad: f32,
+        limit: &[f32; 8],
+    ) -> u32 {
+        const SLACK: f32 = 1.0 / 1_048_576.0;
+        let edge: [f32; 3] = core::array::from_fn(|k| max[k] - min[k]);
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let radius = larger(larger(edge[0], edge[1]), edge[2]) * 0.5 + pad;
+        let (mut w, mut along) = ([lanes.splat(0.0); 3], lanes.splat(0.0));
+        for k in 0..3 {
+            let center = lanes.splat((min[k] + max[k]) * 0.5);
+            w[k] = lanes.sub(center, lanes.load(&self.origin[k]));
+            along = lanes.add(along, lanes.mul(w[k], lanes.load(&self.direction[k])));
+        }
+        let t = lanes.mul(along, lanes.load(&self.inverse_square));
+        let mut square = lanes.splat(0.0);
+        for k in 0..3 {
+            let l = lanes.sub(w[k], lanes.mul(t, lanes.load(&self.direction[k])));
+            square = lanes.add(square, lanes.mul(l, l));
+        }
+        let reach = lanes.splat(radius + pad);
+        let near = lanes.le(square, lanes.splat(radius * radius * (1.0 + SLACK)));
+        let before_end = lanes.le(lanes.sub(t, reach), lanes.load(limit));
+        let after_start = lanes.le(lanes.splat(0.0), lanes.add(t, reach));
+        near & before_end & after_start
     }
 }
 
@@ -99,10 +152,12 @@ pub struct BeamShape {
 impl<L: Lanes> Beam<L> {
     /// The beam, moved outward by all that the test can lose: the depths round by 2^-23 of the largest depth `z` (the
     /// scene ends at 1), their products with slopes by 2^-24 more, and the sums by 2^-24 of `|c| + |s| z`. Altogether
-    /// less than 2^-22 (|s| z + |c|) in position; slopes are moved outward by 2^-22 of themselves.
+    /// less than 2^-22 (|s| z + |c|) in position; slopes, which may err by 5 * 2^-24 of themselves already, are moved outward
+    /// by 2^-21.
     #[inline(always)]
     pub fn new(lanes: L, shape: &BeamShape) -> Self {
         const SLACK: f64 = crate::math::exp2i(-22);
+        const SLOPE_SLACK: f64 = crate::math::exp2i(-21);
         let depth = shape.plane.abs() + 1.0;
         let side = |i: usize| {
             let axis = shape.axis + 1 + i;
@@ -114,11 +169,11 @@ impl<L: Lanes> Beam<L> {
                 min: Row::min(axis),
                 max: Row::max(axis),
                 low: lanes.splat((low - pad) as f32),
-                low_slope: lanes.splat((low_slope - slope * SLACK) as f32),
-                low_at_near: low_slope - slope * SLACK >= 0.0,
+                low_slope: lanes.splat((low_slope - slope * SLOPE_SLACK) as f32),
+                low_at_near: low_slope - slope * SLOPE_SLACK >= 0.0,
                 high: lanes.splat((high + pad) as f32),
-                high_slope: lanes.splat((high_slope + slope * SLACK) as f32),
-                high_at_near: high_slope + slope * SLACK < 0.0,
+                high_slope: lanes.splat((high_slope + slope * SLOPE_SLACK) as f32),
+                high_at_near: high_slope + slope * SLOPE_SLACK < 0.0,
             }
         };
         let plane = shape.plane * shape.sign;

@@ -2,21 +2,45 @@
 
 use core::mem::MaybeUninit;
 
-/// At most `N` numbers, last in, first out. Making one does not write its memory.
+/// The memory of a [`Stack`]: apart from it, so that the compiler keeps its length in a register. Making one does not
+/// write its memory.
 #[derive(Debug)]
-pub struct Stack<const N: usize> {
+pub struct Room<const N: usize> {
+    /// So many items were written.
     length: usize,
     items: [MaybeUninit<u64>; N],
 }
 
-impl<const N: usize> Default for Stack<N> {
+impl<const N: usize> Default for Room<N> {
     #[inline(always)]
     fn default() -> Self {
-        Stack { length: 0, items: [const { MaybeUninit::uninit() }; N] }
+        Room { length: 0, items: [const { MaybeUninit::uninit() }; N] }
     }
 }
 
-impl<const N: usize> Stack<N> {
+impl<const N: usize> Room<N> {
+    /// The stack as it was [left](Stack::leave) last, or an empty one.
+    #[inline(always)]
+    pub fn enter(&mut self) -> Stack<'_, N> {
+        Stack { length: self.length, left: &mut self.length, items: &mut self.items }
+    }
+}
+
+/// At most `N` numbers, last in, first out.
+#[derive(Debug)]
+pub struct Stack<'a, const N: usize> {
+    length: usize,
+    left: &'a mut usize,
+    items: &'a mut [MaybeUninit<u64>; N],
+}
+
+impl<const N: usize> Stack<'_, N> {
+    /// Keeps the items for the next [`enter`](Room::enter).
+    #[inline(always)]
+    pub fn leave(self) {
+        *self.left = self.length;
+    }
+
     /// The number of items.
     #[inline(always)]
     pub fn len(&self) -> usize {
@@ -52,7 +76,8 @@ impl<const N: usize> Stack<N> {
             return None;
         }
         self.length -= 1;
-        // SAFETY: the first `length` items were written by `push` before `length` was raised above them.
+        // SAFETY: the first `length` items were written by `push` or `insert_descending` before `length` was
+        // raised above them: `length` began at 0, or where another stack in this room left it.
         self.items.get(self.length).map(|item| unsafe { item.assume_init() })
     }
 
@@ -92,12 +117,15 @@ mod tests {
 
     #[test]
     fn inserts_in_descending_order_above_the_base() {
-        let mut stack = Stack::<8>::default();
+        let mut room = Room::<8>::default();
+        let mut stack = room.enter();
         stack.push(1);
         for item in [5, 9, 2, 7] {
             stack.insert_descending(1, item);
         }
         assert_eq!(stack.top(), Some(2));
+        stack.leave();
+        let mut stack = room.enter();
         let popped: Vec<u64> = core::iter::from_fn(|| stack.pop()).collect();
         assert_eq!(popped, [2, 5, 7, 9, 1]);
         assert!(stack.is_empty());

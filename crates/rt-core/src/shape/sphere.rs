@@ -405,7 +405,7 @@ impl Task for FindRescaled<'_> {
 }
 
 impl Primitive for Sphere {
-    #[inline]
+    #[inline(always)]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         // The sign of the discriminant `D = (w.d)^2 - |d|^2 (|w|^2 - r^2)` tells most rays: with
         // `T = |d|^2 (|w|^2 + r^2)` and u = 2^-53 it errs by less than 14 u T (3 u of `|d|^2`, 3 u of `|w|^2`, 2 u of each

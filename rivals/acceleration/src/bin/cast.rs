@@ -17,11 +17,17 @@ fn main() {
         geometry.memory() as f64 / n as f64
     );
     let only = arguments.next().unwrap_or_default();
+    let method = arguments.next();
     for (name, rays) in [("primary", primary(1024)), ("random", random(1 << 20))] {
         if !name.starts_with(&only) {
             continue;
         }
-        measure(&format!("{name} nearest"), passes, &rays, || {
+        let measure = |way: &str, passes, rays: &[Ray], work: &mut dyn FnMut() -> (usize, f64)| {
+            if method.as_ref().is_none_or(|method| method == way) {
+                measure(&format!("{name} {way}"), passes, rays, work);
+            }
+        };
+        measure("nearest", passes, &rays, &mut || {
             rays.iter().fold((0, 0.0), |(hits, sum), ray| match geometry.nearest(ray, Interval::FORWARD) {
                 Some(found) => (hits + 1, sum + found.hit.t()),
                 None => (hits, sum),
@@ -29,22 +35,22 @@ fn main() {
         });
         let within = vec![Interval::FORWARD; rays.len()];
         let mut found = vec![None; rays.len()];
-        measure(&format!("{name} nearest_many"), passes, &rays, || {
+        measure("nearest_many", passes, &rays, &mut || {
             geometry.nearest_many(&rays, &within, &mut found);
-            found.iter().flatten().fold((0, 0.0), |(hits, sum), found| (hits + 1, sum + found.hit.t()))
+            (found.iter().filter(|found| found.is_some()).count(), 0.0)
         });
         let mut occluded = vec![false; rays.len()];
-        measure(&format!("{name} occluded_many"), passes, &rays, || {
+        measure("occluded_many", passes, &rays, &mut || {
             geometry.occluded_many(&rays, &within, &mut occluded);
             (occluded.iter().filter(|&&yes| yes).count(), 0.0)
         });
-        measure(&format!("{name} occluded"), passes, &rays, || {
+        measure("occluded", passes, &rays, &mut || {
             (rays.iter().filter(|ray| geometry.occluded(ray, Interval::FORWARD)).count(), 0.0)
         });
     }
 }
 
-fn measure(name: &str, passes: usize, rays: &[Ray], mut work: impl FnMut() -> (usize, f64)) {
+fn measure(name: &str, passes: usize, rays: &[Ray], work: &mut dyn FnMut() -> (usize, f64)) {
     let mut best = f64::INFINITY;
     let mut answer = (0, 0.0);
     for _ in 0..passes {
