@@ -140,9 +140,8 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
     // The widest of the parts that need a node of their own is divided first.
     while count < 8 {
         let wide = |&i: &usize| parts[i].count > 8;
-        let by_area = |&i: &usize, &j: &usize| {
-            parts[i].bounds.half_area().total_cmp(&parts[j].bounds.half_area())
-        };
+        let by_area =
+            |&i: &usize, &j: &usize| parts[i].bounds.half_area().total_cmp(&parts[j].bounds.half_area());
         let Some(chosen) = (0..count).filter(wide).max_by(by_area) else { break };
         let part = parts[chosen];
         (parts[chosen], parts[count]) = split(&mut items[part.start..part.start + part.count], part);
