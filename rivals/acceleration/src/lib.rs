@@ -122,3 +122,46 @@ pub fn torus_geometry(n: usize) -> rt_core::GeometryBuilder {
     }
     builder
 }
+
+/// Spheres or tori, by name.
+pub fn scene(kind: &str, n: usize) -> rt_core::GeometryBuilder {
+    if kind == "torus" { torus_geometry(n) } else { sphere_geometry(n) }
+}
+
+/// Prints the best rate of some passes, and how many rays hit.
+pub fn measure(name: &str, passes: usize, rays: usize, mut work: impl FnMut() -> usize) {
+    let mut best = f64::INFINITY;
+    let mut hits = 0;
+    for _ in 0..passes {
+        let start = cpu_seconds();
+        hits = work();
+        best = best.min(cpu_seconds() - start);
+    }
+    println!("{name:31} {:8.3} Mrays/s  hits={hits}", rays as f64 / best * 1e-6);
+}
+
+/// Prints hits, the sum of the parameters, and how far they are from the truth, in units of 2^-53 of the distance to the hit
+/// (of 1 if that is less: coordinates are of that size). NaN stands for no hit. True is what the library's exact
+/// records say.
+pub fn judge(name: &str, geometry: &Geometry, rays: &[Ray], answers: &[f64]) {
+    let (mut hits, mut sum, mut wrong, mut worst) = (0, 0.0, 0, 0.0_f64);
+    for (ray, &t) in rays.iter().zip(answers) {
+        if !t.is_nan() {
+            hits += 1;
+            sum += t;
+        }
+        match geometry.nearest(ray, rt_core::Interval::FORWARD) {
+            None if t.is_nan() => {}
+            Some(found) if !t.is_nan() => {
+                let exact = geometry.surface(ray, found).t;
+                let error = (t - exact).abs() / exact.max(1.0);
+                if error > 1e-5 { wrong += 1 } else { worst = worst.max(error) }
+            }
+            _ => wrong += 1,
+        }
+    }
+    let worst = worst * 9_007_199_254_740_992.0;
+    println!(
+        "{name:11} answers: hits={hits} sum of t={sum:.6}  wrong hits {wrong}, worst error {worst:.3e} u"
+    );
+}

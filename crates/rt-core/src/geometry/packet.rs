@@ -21,9 +21,6 @@ const FEWEST: u32 = 4;
 /// rays one by one: it decides time only.
 const MOST_SPREAD: f64 = 64.0;
 
-/// The same for a whole packet; a wider one is halved.
-const MOST_SPREAD_OF_WHOLE: f64 = 16.0;
-
 /// The rays of a packet and their queries.
 pub(super) struct Packet<'a, Q> {
     pub rays: &'a [Ray],
@@ -113,13 +110,7 @@ impl<L: Lanes> Span<L> {
 /// made in two steps, and errs by 4.1 v of itself. A position is `o - s (z - plane)` with origins that err by v m, and
 /// |z - plane| <= 2 m: it errs by less than 2 v m + 15 v |s| m, less than 2^-20 m (1 + |s|).
 #[inline(always)]
-fn bundle<L: Lanes>(
-    lanes: L,
-    side: &Side,
-    groups: Range<usize>,
-    box_size: f64,
-    most_spread: f64,
-) -> Option<Bundle> {
+fn bundle<L: Lanes>(lanes: L, side: &Side, groups: Range<usize>, box_size: f64) -> Option<Bundle> {
     let first = groups.start % GROUPS;
     let [x, y, z] = [0, 1, 2].map(|k| side.direction[first][k][0].abs());
     let axis = if x >= y && x >= z {
@@ -183,7 +174,7 @@ fn bundle<L: Lanes>(
         slope,
         error: side.error + f64::from(far) * exp2i(-20),
     };
-    (spread <= most_spread).then_some(Bundle { shape, far, start, depth, groups })
+    (spread <= MOST_SPREAD).then_some(Bundle { shape, far, start, depth, groups })
 }
 
 impl<Q: Query> Packet<'_, Q> {
@@ -203,8 +194,7 @@ impl<Q: Query> Packet<'_, Q> {
                 continue;
             }
             let whole = groups.len() == GROUPS;
-            let most_spread = if whole { MOST_SPREAD_OF_WHOLE } else { MOST_SPREAD };
-            match bundle(lanes, &self.side, groups, geometry.tree.box_size, most_spread) {
+            match bundle(lanes, &self.side, groups, geometry.tree.box_size) {
                 Some(bundle) => {
                     done |= members;
                     self.active = members;

@@ -85,15 +85,15 @@ impl EightRays {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let radius = larger(larger(edge[0], edge[1]), edge[2]) * 0.5 + pad;
         let (mut w, mut along) = ([lanes.splat(0.0); 3], lanes.splat(0.0));
-        for k in 0..3 {
+        for (k, w) in w.iter_mut().enumerate() {
             let center = lanes.splat((min[k] + max[k]) * 0.5);
-            w[k] = lanes.sub(center, lanes.load(&self.origin[k]));
-            along = lanes.add(along, lanes.mul(w[k], lanes.load(&self.direction[k])));
+            *w = lanes.sub(center, lanes.load(&self.origin[k]));
+            along = lanes.add(along, lanes.mul(*w, lanes.load(&self.direction[k])));
         }
         let t = lanes.mul(along, lanes.load(&self.inverse_square));
         let mut square = lanes.splat(0.0);
-        for k in 0..3 {
-            let l = lanes.sub(w[k], lanes.mul(t, lanes.load(&self.direction[k])));
+        for (w, direction) in w.iter().zip(&self.direction) {
+            let l = lanes.sub(*w, lanes.mul(t, lanes.load(direction)));
             square = lanes.add(square, lanes.mul(l, l));
         }
         let reach = lanes.splat(radius + pad);
