@@ -208,13 +208,23 @@ fn enter<R: Request, L: Lanes>(
     skip: &[u32],
     answers: &mut [R::Answer],
 ) {
-    if geometry.apart.is_empty()
-        && geometry.frame.enter_together(lanes, packet.rays, within, &mut packet.side)
-    {
+    if geometry.frame.enter_together(lanes, packet.rays, within, &mut packet.side) {
         packet.active = ((1_u64 << packet.rays.len()) - 1) as u32;
-        let windows = within.iter().zip(&packet.side.window);
-        for (i, (query, (within, &absolute))) in packet.queries.iter_mut().zip(windows).enumerate() {
+        for (i, (query, within)) in packet.queries.iter_mut().zip(within).enumerate() {
+            let absolute = packet.side.window[i];
             *query = R::query(*within, Window { absolute }, skip.get(i).copied());
+        }
+        if geometry.apart.is_empty() {
+            return;
+        }
+        for (i, (ray, answer)) in packet.rays.iter().zip(answers).enumerate() {
+            let query = &mut packet.queries[i];
+            if geometry.ask_apart(ray, query).is_break() {
+                *answer = R::answer(geometry, ray, query);
+                packet.active &= !(1 << i);
+            } else {
+                packet.side.cut(i, query.limit());
+            }
         }
         return;
     }

@@ -268,6 +268,12 @@ impl Side {
         let place = place % PACKET;
         at_least(t * self.factor[place] + self.shift[place])
     }
+
+    /// Ends this ray at `t`.
+    #[inline(always)]
+    pub fn cut(&mut self, place: usize, t: f64) {
+        self.limit[place / 8 % GROUPS][place % 8] = self.limit_of(place, t);
+    }
 }
 
 impl Frame {
@@ -288,7 +294,7 @@ impl Frame {
         let center = [self.center.x, self.center.y, self.center.z];
         let scale = lanes.splat4(exp2i(-self.exponent));
         let (small, large) = (lanes.splat4(exp2i(-1000)), lanes.splat4(exp2i(1000)));
-        let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(exp2i(-24)));
+        let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(WINDOW));
         let mut fine = 15;
         for four in 0..PACKET / 4 {
             let (group, lane) = (four / 2, four % 2 * 4);
