@@ -11,7 +11,7 @@ use super::super::{Roots, bracket};
 use super::{discs, factors, split};
 use crate::Interval;
 use crate::double::Double;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Product, Solver, Task, run, solve};
 use crate::math::{exp2i, exponent};
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3 + c[4] x^4`.
@@ -44,7 +44,7 @@ pub fn quartic(c: [f64; 5], within: Interval) -> Roots<4> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();
     }
-    run(Quartic { c }).inside(within)
+    solve::<Quartic>(c, within)
 }
 
 /// The real roots of a quartic whose coefficients (ascending powers) are given in double-double, in double-double.
@@ -60,15 +60,13 @@ pub fn double(c: [Double; 5]) -> Roots<4, Double> {
     run(Careful { c })
 }
 
-struct Quartic {
-    c: [f64; 5],
-}
+struct Quartic;
 
-impl Task for Quartic {
+impl Solver for Quartic {
     type Output = Roots<4>;
     #[inline(always)]
-    fn run<P: Product>(self) -> Self::Output {
-        all_roots::<P>(&self.c)
+    fn solve<P: Product>(c: [f64; 5], within: Interval) -> Roots<4> {
+        all_roots::<P>(&c).inside(within)
     }
 }
 
@@ -109,36 +107,13 @@ fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
             roots.push(x, 1);
             Some(with_zeros(roots))
         }
-        2 => {
-            let c = [d[0], d[1], d[2]];
-            let roots = super::super::quadratic::quick::<P>(&c).map(|roots| roots.inside(Interval::LINE));
-            roots.or_else(|| quadratic::<P>(&c)).map(with_zeros)
-        }
+        2 => super::super::quadratic::balanced::<P>(&[d[0], d[1], d[2]]).map(with_zeros),
         3 => {
-            let roots = super::super::cubic::quick::<P>(&[d[0], d[1], d[2], d[3]]);
-            let roots = roots.map(|roots| roots.inside(Interval::LINE));
+            let roots = super::super::cubic::balanced::<P>(&[d[0], d[1], d[2], d[3]]);
             roots.or_else(|| quick::<P>(&[0.0, d[0], d[1], d[2], d[3]])).map(with_zeros)
         }
         _ => None,
     }
-}
-
-/// The roots of a quadratic whose outer coefficients are not zero; `None` in doubt.
-#[inline(always)]
-fn quadratic<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
-    let e = c.map(exponent);
-    let near = |e: i32| (-400..=400).contains(&e);
-    // x = y 2^k with k half the difference of the outer exponents, and the leading coefficient brought to about 1.
-    let k = (e[0] - e[2]) >> 1;
-    if !(near(e[0]) && near(e[2]) && (c[1] == 0.0 || near(e[1])) && near(e[1].max(-400) - e[2] - k)) {
-        return None;
-    }
-    let s = exp2i(-e[2]);
-    let i = exp2i(-k);
-    let [n, m, l] = [c[0] * s * i * i, c[1] * s * i, c[2] * s];
-    // Squares and their low parts stay above 2^-968.
-    let small = m != 0.0 && exponent(m) < -200 || exponent(m) > 200;
-    if small { None } else { Some(factors::quadratic::<P>(n, m, l)?.scaled(exp2i(k))) }
 }
 
 #[inline(never)]
