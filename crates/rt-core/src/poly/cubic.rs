@@ -59,7 +59,8 @@ fn quick<P: Product>(c: [f64; 4]) -> Option<Simple<3>> {
 }
 
 /// The roots if the outer coefficients are normal numbers, brought to about 1 by exact scaling: with the very bits of the
-/// quick way. `None` in doubt.
+/// quick way. `None` in doubt. The coefficients may stand for others within 2^-116 of the magnitudes of the terms: that is
+/// far below every bound.
 #[inline(never)]
 pub(super) fn balanced<P: Product>(c: &[f64; 4]) -> Option<Roots<4>> {
     let e = c.map(exponent);

@@ -45,9 +45,12 @@ fn general<P: Product>(c0: f64, c1: f64, c2: f64, within: Interval) -> Roots<2> 
 }
 
 /// The roots if the outer coefficients are normal numbers, brought to about 1 by exact scaling: then by the formula, with
-/// the very bits of the quick way, or in double-double. `None` in doubt.
+/// the very bits of the quick way, or, if the coefficients are `exact`, in double-double. `None` in doubt.
+///
+/// Without being exact they may stand for others within 2^-116 of the magnitudes of the terms: unequal products of two
+/// numbers differ by 2^-106 at least.
 #[inline(never)]
-pub(super) fn balanced<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
+pub(super) fn balanced<P: Product>(c: &[f64; 3], exact: bool) -> Option<Roots<4>> {
     let [e0, e1, e2] = c.map(exponent);
     // x = y 2^k with k half the difference of the outer exponents, and the leading coefficient brought to about 1.
     let k = (e0 - e2) >> 1;
@@ -61,7 +64,8 @@ pub(super) fn balanced<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
     let c = [with(c[0], e0 - e2 - 2 * k), c1, with(c[2], 0)];
     let roots = match quick::<P>(c) {
         Some(roots) => roots.inside(&Interval::LINE),
-        None => factors::quadratic::<P>(c[0], c[1], c[2])?,
+        None if exact => factors::quadratic::<P>(c[0], c[1], c[2])?,
+        None => return None,
     };
     // Half of k and again: k itself may be beyond the exponents of `f64`.
     let roots = roots.scaled(exp2i(k >> 1)).scaled(exp2i(k - (k >> 1)));
