@@ -1,5 +1,6 @@
 //! Quadratics and cubics against exact arithmetic: the number of roots and every multiplicity by the sign of the
-//! discriminant, the place of every simple root by counting the roots on both sides of it, all in expansions.
+//! discriminant, the place of every simple root by counting the roots on both sides of it, all in expansions. Quartics
+//! with roots of very different size against the careful solver.
 //!
 //! `RT_LOWER_DEGREES` sets the number of cases of each degree (default 20,000), `RT_ANY_SEED` where the sequence starts.
 #![cfg(feature = "testing")]
@@ -9,7 +10,7 @@
 use rt_core::Interval;
 use rt_core::double::{Double, two_sum};
 use rt_core::kernel::{Fused, Level, level, set_level};
-use rt_core::poly::{Root, cubic, quadratic};
+use rt_core::poly::{Root, cubic, quadratic, quartic};
 use rt_core::testing::Random;
 
 /// An exact sum: parts that do not overlap, in ascending order, none of them zero (Shewchuk 1997).
@@ -371,4 +372,48 @@ fn quadratics_and_cubics_keep_every_promise() {
     }
     println!("{count} quadratics and {count} cubics, {failures} findings");
     assert_eq!(failures, 0, "{examples:#?}");
+}
+
+/// A product of two quadratics of very different size, or coefficients of any size.
+fn any_quartic(random: &mut Random) -> [f64; 5] {
+    let most = [20, 60, 200][random.below(3) as usize];
+    let power = |random: &mut Random| 2f64.powi(random.below(2 * most + 1) as i32 - most as i32);
+    if random.once_in(4) {
+        return [(); 5].map(|()| number(random, 53) * power(random));
+    }
+    let mut c = [0.0; 5];
+    let [f, g] = [(); 2].map(|()| {
+        let s = power(random);
+        let [c0, c1, c2] = any_quadratic(random);
+        [c0 * s * s, c1 * s, c2]
+    });
+    (0..9).for_each(|i| c[i / 3 + i % 3] += f[i / 3] * g[i % 3]);
+    c
+}
+
+#[test]
+fn quartics_of_any_size_have_the_careful_solvers_roots() {
+    let best = level();
+    let first = setting("RT_ANY_SEED", 0);
+    for seed in first..first + setting("RT_LOWER_DEGREES", 20_000) / 4 {
+        let mut random = Random::new(seed << 8);
+        let c = any_quartic(&mut random);
+        if !c.iter().all(|&c| c == 0.0 || c.is_normal()) {
+            continue;
+        }
+        let roots = quartic(c, Interval::LINE);
+        let careful = quartic::double(c.map(Double::from));
+        assert_eq!(roots.len(), careful.len(), "{c:?} {roots:?} {careful:?}");
+        for (a, b) in roots.iter().zip(careful.iter()) {
+            // One unit in the last place at most: both are within 0.51 of the same number.
+            assert!((a.x - b.x.to_f64()).abs() <= f64::EPSILON * a.x.abs(), "{c:?} {a:?} {b:?}");
+            assert_eq!(a.multiplicity, b.multiplicity, "{c:?}");
+        }
+        let mirrored = quartic([c[0], -c[1], c[2], -c[3], c[4]], Interval::LINE);
+        assert_eq!(listed(&roots, 1.0), listed(&mirrored, -1.0), "{c:?}");
+        set_level(Level::Portable);
+        let portable = quartic(c, Interval::LINE);
+        set_level(best);
+        assert_eq!(listed(&roots, 1.0), listed(&portable, 1.0), "{c:?}");
+    }
 }
