@@ -358,6 +358,16 @@ fn roots_of_very_different_size_are_found_within_the_steps_allowed() {
     assert_eq!(found(&solve(mirrored)), [(-small, 1), (small, 1), (1.9999999999999982, 1), (2.0, 1)]);
 }
 
+/// The discriminant of a factor in plain arithmetic is zero: no disc about such a pair proves anything.
+#[test]
+fn a_pair_of_height_zero_is_left_to_more_precision() {
+    let c = [-0.009618162346411439, -0.11512561014324009, -0.31203359955835624, 0.3615040884019865, 1.0];
+    assert_eq!(solve(c).len(), 4);
+    let c =
+        [226.42603417056844, -240.75935028086758, 94.09491878510843, -15.999999999999996, 0.9999999999999998];
+    assert_eq!(solve(c).len(), 0);
+}
+
 #[test]
 fn two_factors_with_one_constant_mirror_bit_for_bit() {
     // Symmetric about -1/2; one root lies within 2^-58 of the middle of two numbers.

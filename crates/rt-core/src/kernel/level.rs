@@ -25,6 +25,12 @@ pub fn level() -> Level {
     }
 }
 
+/// Whether the level is known to be [`Level::Avx2`]; false before the first call of [`level`].
+#[inline]
+pub(super) fn is_avx2() -> bool {
+    LEVEL.load(Ordering::Relaxed) == Level::Avx2 as u8
+}
+
 /// Uses this level from now on, in the whole process, or the best that the machine has if that is lower.
 ///
 /// The results are the same bits at every level; this is for tests and measurements. Returns the level in use.

@@ -19,7 +19,7 @@ pub use level::{Level, level, set_level};
 pub(crate) use memory::vec_on_large_pages;
 pub use packet::{Beam, BeamShape, EightRays};
 pub use stack::{Room, Stack};
-pub use task::{Dekker, Fused, Product, Task, run, run_portable};
+pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
 
 /// Runs the computation with the widest lanes of the [`level`] in use.
 #[inline(always)]

@@ -1,12 +1,22 @@
 //! Functions compiled twice: with fused multiply-add and without, chosen at run time.
 
+use super::level::is_avx2;
 use super::{Level, level};
+use crate::Interval;
 
 /// How the exact product of two numbers is computed: the one thing that differs between instruction sets.
 pub trait Product: Copy {
     /// `(p, e)` with `p = fl(a * b)` and `p + e = a * b` exactly, provided `|a|, |b| < 2^995` and
     /// `|a * b| >= 2^-968` or zero.
     fn two_product(a: f64, b: f64) -> (f64, f64);
+
+    /// `c - a * b`, rounded once, provided that `c` and `fl(a * b)` differ by a factor of two at most (then their
+    /// difference is exact) and that [`two_product`](Self::two_product) is exact.
+    #[inline(always)]
+    fn remainder(c: f64, a: f64, b: f64) -> f64 {
+        let (p, e) = Self::two_product(a, b);
+        (c - p) - e
+    }
 }
 
 /// Products by fused multiply-add. Only inside a [`Task`] that [`run`] chose it for: elsewhere `mul_add` is a slow
@@ -19,6 +29,11 @@ impl Product for Fused {
     fn two_product(a: f64, b: f64) -> (f64, f64) {
         let p = a * b;
         (p, fused(a, b, -p))
+    }
+
+    #[inline(always)]
+    fn remainder(c: f64, a: f64, b: f64) -> f64 {
+        fused(-a, b, c)
     }
 }
 
@@ -86,4 +101,44 @@ pub fn run_portable<T: Task>(task: T) -> T::Output {
 #[target_feature(enable = "avx2,fma")]
 fn run_fused<T: Task>(task: T) -> T::Output {
     task.run::<Fused>()
+}
+
+/// A [`Task`] of the coefficients of a polynomial and an interval.
+///
+/// They travel in registers, each by itself. From memory the compiler would load two at once, and two that have just been
+/// written apart (or not as the same pair) are not to be had before everything before them is done.
+pub trait Solver {
+    /// What is found.
+    type Output;
+    /// Computes it with this kind of product.
+    fn solve<P: Product>(c: [f64; 5], within: Interval) -> Self::Output;
+}
+
+/// Solves with fused multiply-add where the machine has it, otherwise with Dekker's products.
+#[inline(always)]
+pub fn solve<S: Solver>([c0, c1, c2, c3, c4]: [f64; 5], within: Interval) -> S::Output {
+    #[cfg(all(target_arch = "x86_64", feature = "std"))]
+    if is_avx2() {
+        // SAFETY: the level is Avx2 only after run-time detection of AVX2 and FMA on this machine.
+        return unsafe { solve_fused::<S>(c0, c1, c2, c3, c4, within) };
+    }
+    let _ = is_avx2;
+    solve_otherwise::<S>(c0, c1, c2, c3, c4, within)
+}
+
+#[cfg(all(target_arch = "x86_64", feature = "std"))]
+#[target_feature(enable = "avx2,fma")]
+fn solve_fused<S: Solver>(c0: f64, c1: f64, c2: f64, c3: f64, c4: f64, within: Interval) -> S::Output {
+    S::solve::<Fused>([c0, c1, c2, c3, c4], within)
+}
+
+/// Without fused multiply-add, or before it is known whether there is any.
+#[inline(never)]
+fn solve_otherwise<S: Solver>(c0: f64, c1: f64, c2: f64, c3: f64, c4: f64, within: Interval) -> S::Output {
+    #[cfg(all(target_arch = "x86_64", feature = "std"))]
+    if level() >= Level::Avx2 {
+        // SAFETY: as above.
+        return unsafe { solve_fused::<S>(c0, c1, c2, c3, c4, within) };
+    }
+    S::solve::<Dekker>([c0, c1, c2, c3, c4], within)
 }

@@ -1,83 +1,155 @@
 //! Degree three.
 
-use super::quartic::discs::{LEFT, compensated, real};
-use super::quartic::split::{Factor, isolated_root};
+use super::quartic::discs::{LEFT, compensated};
 use super::{Roots, Simple, quartic};
 use crate::Interval;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Product, Solver, solve};
 use crate::math::{exp2i, exponent, sqrt};
-use core::hint::select_unpredictable;
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3`.
 ///
 /// Exact coefficients, special cases and promises as for [`quartic()`](super::quartic()): the exact number of roots, multiple roots
-/// decided exactly, simple ones within 0.51 units in the last place. By a closed form in `f64`
-/// with a certificate, as the quartic divided by `x` where that does not hold, and where that leaves a doubt by the
-/// careful solver between critical points.
+/// decided exactly, simple ones within 0.51 units in the last place. By a closed form in `f64` whose
+/// discriminant has a certain sign, corrected with a bound of what is left; as the quartic divided by `x` where that
+/// does not do, and where that leaves a doubt by the careful solver between critical points.
 ///
 /// ```
 /// let roots = rt_core::poly::cubic([-2.0, 2.0, -1.0, 1.0], rt_core::Interval::FORWARD);
 /// assert_eq!((roots.len(), roots[0].x), (1, 1.0));
 /// ```
 pub fn cubic(c: [f64; 4], within: Interval) -> Roots<3> {
-    run(Solve { c: &c, within })
+    solve::<Cubic>([c[0], c[1], c[2], c[3], 0.0], within)
 }
 
-struct Solve<'a> {
-    c: &'a [f64; 4],
-    within: Interval,
-}
+struct Cubic;
 
-impl Task for Solve<'_> {
+impl Solver for Cubic {
     type Output = Roots<3>;
     #[inline(always)]
-    fn run<P: Product>(self) -> Self::Output {
-        match quick::<P>(self.c) {
-            Some(roots) => roots.inside(self.within),
-            None => general::<P>(self.c, self.within),
+    fn solve<P: Product>([c0, c1, c2, c3, _]: [f64; 5], within: Interval) -> Roots<3> {
+        match quick::<P>([c0, c1, c2, c3]) {
+            Some(roots) => roots.inside(&within),
+            None => general::<P>(c0, c1, c2, c3, within),
         }
     }
 }
 
+#[cold]
 #[inline(never)]
-fn general<P: Product>(&[c0, c1, c2, c3]: &[f64; 4], within: Interval) -> Roots<3> {
+fn general<P: Product>(c0: f64, c1: f64, c2: f64, c3: f64, within: Interval) -> Roots<3> {
     if !(c0.is_finite() && c1.is_finite() && c2.is_finite() && c3.is_finite()) {
         return Roots::default();
     }
     quartic::all_roots::<P>(&[c0, c1, c2, c3, 0.0]).within(within)
 }
 
-/// The `f64` way: the root farthest from the others, the quadratic that is left, and the certificate by inclusion
-/// discs (as for the quartic), of radius `3 |W|` for degree three.
+/// The `f64` way for coefficients of moderate size: closed form and certificate.
 #[inline(always)]
-pub(super) fn quick<P: Product>(c: &[f64; 4]) -> Option<Simple<3>> {
-    // Exponents within 80 of 0: the sixth power of a ratio, the largest product, stays below 2^1000.
-    let usual = |c: f64| (exponent(c) + 80) as u32 <= 160;
-    if !(usual(c[0]) && usual(c[3]) && (usual(c[1]) || c[1] == 0.0) && (usual(c[2]) || c[2] == 0.0)) {
+fn quick<P: Product>(c: [f64; 4]) -> Option<Simple<3>> {
+    // Exponents from -64 to 63, or zero in the middle: less the least exponent, the upper four bits are zero.
+    let beyond = |c: f64| c.to_bits().wrapping_sub(exp2i(-64).to_bits()) & (15 << 59);
+    let ends = beyond(c[0]) | beyond(c[3]);
+    let nothing = |c: f64| c == 0.0;
+    if ends | beyond(c[1]) | beyond(c[2]) != 0
+        && !(ends == 0 && (beyond(c[1]) == 0 || nothing(c[1])) && (beyond(c[2]) == 0 || nothing(c[2])))
+    {
         return None;
     }
-    let inverse = 1.0 / c[3];
-    let [d, b, a] = [c[0] * inverse, c[1] * inverse, c[2] * inverse];
-    // x = y - a/3 gives y^3 + m y + n.
-    let t = a * (1.0 / 3.0);
-    let t2 = t * t;
-    let x = isolated_root(b - 3.0 * t2, d - t * (b - 2.0 * t2)) - t;
-    // Division by x - x1 from the end where it is stable; both are computed, as the choice cannot be foreseen.
-    let inverse = 1.0 / x;
-    let constant = -d * inverse;
-    let linear = a + x;
-    let below = (x * x * x).abs() > d.abs();
-    let rest = Factor {
-        linear: select_unpredictable(below, (constant - b) * inverse, linear),
-        constant: select_unpredictable(below, constant, b + linear * x),
-    };
-    let discriminant = 0.25 * rest.linear * rest.linear - rest.constant;
-    if discriminant > 0.0 {
-        let y = real(&rest, discriminant);
-        three::<P>(c, [x, y[0], y[1]])
-    } else {
-        one::<P>(c, x, &rest, discriminant)
+    formula::<P>(&c)
+}
+
+/// The roots if the outer coefficients are normal numbers, brought to about 1 by exact scaling: with the very bits of the
+/// quick way. `None` in doubt. The coefficients may stand for others within 2^-116 of the magnitudes of the terms: that is
+/// far below every bound.
+#[inline(never)]
+pub(super) fn balanced<P: Product>(c: &[f64; 4]) -> Option<Roots<4>> {
+    let e = c.map(exponent);
+    // x = y 2^k with k a third of the difference of the outer exponents, and the leading coefficient brought to about 1.
+    let k = (e[0] - e[3]).div_euclid(3);
+    let mut y = [0.0; 4];
+    for (i, y) in y.iter_mut().enumerate() {
+        if c[i] != 0.0 {
+            let shift = e[i] - e[3] - k * (3 - i as i32);
+            // 128 is the most that the quick way admits, less the third and the rounding of the outer ones.
+            if e[i] == -1023 || shift.abs() > 132 {
+                return None;
+            }
+            *y = f64::from_bits(c[i].to_bits() & !(0x7ff << 52) | exp2i(shift).to_bits());
+        }
     }
+    // Half of k and again: k itself may be beyond the exponents of `f64`.
+    let roots = formula::<P>(&y)?.inside(&Interval::LINE);
+    let roots = roots.scaled(exp2i(k >> 1)).scaled(exp2i(k - (k >> 1)));
+    if roots.iter().all(|root| root.x.is_normal()) { Some(roots) } else { None }
+}
+
+/// The number of roots by the sign of the discriminant, a first approximation by radicals or by the cosine, and one or
+/// two corrections with a bound of what they leave.
+///
+/// The outer coefficients are not zero, and the sixth power of a root times the leading coefficient stays in the range.
+#[inline(always)]
+fn formula<P: Product>(c: &[f64; 4]) -> Option<Simple<3>> {
+    const THIRD: f64 = 1.0 / 3.0;
+    let [c0, c1, c2, c3] = *c;
+    // u = c3 x: u^3 + c2 u^2 + b u + d; u = v - t: v^3 + 3 q v + n.
+    let (t, b, d) = (c2 * THIRD, c1 * c3, c0 * c3 * c3);
+    let t2 = t * t;
+    let q = b * THIRD - t2;
+    let n = d - t * (b - 2.0 * t2);
+    // v = y or -y: y^3 + 3 q y = 2 h, h not negative. For n = 0 the sign changes with that of the polynomial as well.
+    let h = 0.5 * n.abs();
+    let sign = 1f64.copysign(if n == 0.0 { t } else { -n });
+    let discriminant = h * h + q * q * q;
+    // The roundings of q stay below 6 u of the magnitudes of its terms, those of h below 10 u, u = 2^-53: those of the
+    // discriminant are below 24 u of these.
+    let q_size = b.abs() * THIRD + t2;
+    let h_size = 0.5 * (d.abs() + t.abs() * (b.abs() + 2.0 * t2));
+    let doubt = exp2i(-48) * (h_size * h_size + q_size * q_size * q_size);
+    let inverse = 1.0 / c3;
+    let back = |y: f64| (sign * y - t) * inverse;
+    if discriminant > doubt {
+        // Cardano: a - b with a^3 - b^3 = 2 h and a b = q, without its cancellation.
+        let cube = h + sqrt(discriminant);
+        let r = inverse_cube_root(cube);
+        let (a, b) = (cube * r * r, q * r);
+        let y = polished(2.0 * h / (a * a + q + b * b), q, h);
+        one::<P>(c, back(y), sign * c3, y, q, q_size)
+    } else if discriminant < -doubt {
+        // Viete: 2 sqrt(-q) cos(acos(z) / 3), the cosine by its best polynomial of degree 4, within 6e-6.
+        let root = sqrt(-q);
+        let z = h * root * (1.0 / (q * q));
+        let cosine = COSINE[0] + z * (COSINE[1] + z * (COSINE[2] + z * (COSINE[3] + z * COSINE[4])));
+        let y = polished(2.0 * root * cosine, q, h);
+        // What division by v - y leaves is v^2 + y v + y^2 + 3 q.
+        let half = 0.5 * y;
+        let root = sqrt(-3.0 * (q + half * half));
+        three::<P>(c, [back(y), back(root - half), back(-root - half)])
+    } else {
+        None
+    }
+}
+
+/// `cos(acos(z) / 3)` for `0 <= z <= 1`.
+const COSINE: [f64; 5] = [0.866_030_43, 0.166_411_72, -0.045_921_93, 0.017_512_19, -0.004_035_4];
+
+/// The root of `y^3 + 3 q y - 2 h` near `y` by Halley's method, of third order: from 6e-6 to the roundings.
+#[inline(always)]
+fn polished(y: f64, q: f64, h: f64) -> f64 {
+    let y2 = y * y;
+    let f = (y2 + 3.0 * q) * y - 2.0 * h;
+    let slope = 3.0 * (y2 + q);
+    y - f * slope / (slope * slope - 3.0 * y * f)
+}
+
+/// The reciprocal cube root of a positive normal number, to 2.2e-6.
+#[inline(always)]
+fn inverse_cube_root(x: f64) -> f64 {
+    // Minus a third of the bits is minus a third of the logarithm, read linearly between powers of two; the constant is
+    // four thirds of the bias, less the mean error of that reading. What is missing is a function of x r^3, from 0.9 to
+    // 1.106, by its best polynomial.
+    let r = f64::from_bits(0x553e_f000_0000_0000 - x.to_bits() / 3);
+    let z = x * (r * r * r);
+    r * ((1.729_460_8 - 1.297_972 * z) + z * z * (0.740_896_5 - 0.172_387_3 * z))
 }
 
 /// Three real roots.
@@ -123,38 +195,36 @@ fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Simple<3>> {
     None
 }
 
-/// A real root and a pair of complex ones, those of `rest`.
+/// The only real root, near `x`: `c3 x` is `v - t`, `v` is `y` with the sign of `lead`, `c3` is `lead` with a sign, and
+/// `3 (y^2 + q)` is the slope there, in terms of `v`.
+///
+/// If `w` is Newton's correction in these terms and `e` the error, `e = w + e^2 y / (y^2 + q) - e^3 / (3 (y^2 + q))`
+/// (the development ends there). If both terms are below `w / 200` for `e = w`, a solution lies near `w`, and there is
+/// but one root. The slope's own error is below 20 u of the magnitudes.
 #[inline(always)]
-fn one<P: Product>(c: &[f64; 4], mut x: f64, rest: &Factor, discriminant: f64) -> Option<Simple<3>> {
-    let (a, b) = (rest.linear, rest.constant);
-    let (re, im2) = (-0.5 * a, -discriminant);
-    // The remainder of the division by the pair's factor bounds |p(z)|; its roundings are below 2^-46 of the terms.
-    let c2 = c[2] - a * c[3];
-    let (r1, r0) = (c[1] - a * c2 - b * c[3], c[0] - b * c2);
-    let m = sqrt(b.abs());
-    let size = ((c[3].abs() * m + c[2].abs()) * m + c[1].abs()) * m + c[0].abs();
-    let residual = 3.01 * (r1.abs() * m + r0.abs() + exp2i(-46) * size);
-    let im = sqrt(im2);
-    for _ in 0..4 {
+fn one<P: Product>(
+    c: &[f64; 4],
+    mut x: f64,
+    lead: f64,
+    mut y: f64,
+    q: f64,
+    q_size: f64,
+) -> Option<Simple<3>> {
+    for _ in 0..3 {
         let ([p], [size]) = compensated::<P, 4, 1>(c, &[x]);
-        let far2 = (x - re) * (x - re) + im2;
-        let inverse = 1.0 / (c[3] * far2);
-        let w = p * inverse;
-        let noise = (size * inverse).abs() * exp2i(-100);
-        // The disc of the pair, 3 |W| = 3 |p(z)| / (2 |c3| im far) with far >= im, and the rounding of the
-        // discriminant, 2^-50 b / im, must stay below im / 8; so must the root's own disc.
-        let clear = residual <= 0.25 * im2 * im * c[3].abs()
-            && exp2i(-50) * b.abs() <= 0.125 * im2
-            && 3.01 * (w.abs() + noise) <= 0.125 * im;
-        if !clear {
+        let inverse = 1.0 / (y * y + q);
+        let w = p * (c[3] * (1.0 / 3.0) * inverse);
+        let noise = (size * c[3] * inverse).abs() * exp2i(-100);
+        let step = (w * lead).abs();
+        let share = 1.1 * inverse * (step * (y + step) + exp2i(-47) * (y * y + q_size));
+        let next = x - w;
+        if !(share < exp2i(-8)) {
             return None;
         }
-        let next = x - w;
-        // The pair's two errors over their distance: 2 * 3 |p(z)| / (2 |c3| im far^2), times im.
-        let share = residual * inverse.abs();
-        if w.abs() * (1.2 * share + exp2i(-48) * im) <= (LEFT * next.abs() - noise) * im {
+        if w.abs() * share <= LEFT * next.abs() - noise {
             return Some(Simple::One(next));
         }
+        y -= w * lead;
         x = next;
     }
     None

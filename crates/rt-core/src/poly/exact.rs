@@ -36,14 +36,14 @@ impl Expansion {
     /// Adds a number.
     fn add(&mut self, b: f64) {
         let mut q = b;
-        let mut sum = Expansion::zero();
-        for &part in &self.part[..self.len] {
-            let (s, e) = two_sum(q, part);
-            sum.push(e);
+        let len = core::mem::take(&mut self.len);
+        for i in 0..len {
+            // What is kept never overtakes what is read.
+            let (s, e) = two_sum(q, self.part[i]);
+            self.push(e);
             q = s;
         }
-        sum.push(q);
-        *self = sum;
+        self.push(q);
     }
 
     fn add_double(&mut self, b: Double) {
@@ -167,6 +167,12 @@ pub(super) fn multiple_root<P: Product>(p: &Polynomial, x: Double) -> Option<u32
 fn fraction<P: Product>(y: Double) -> Option<(f64, f64)> {
     const LIMIT: f64 = 134_217_728.0;
     let (mut rest, sign) = if y.high < 0.0 { (-y, -1.0) } else { (y, 1.0) };
+    // A number of few digits, at once: by the same bound as below.
+    const SHORT: f64 = 67_108_864.0;
+    let n = floor(rest.high * SHORT + 0.5);
+    if ((rest.high * SHORT - n) + rest.low * SHORT).abs() <= SHORT * (1.0 / 72_057_594_037_927_936.0) {
+        return Some((sign * n, SHORT));
+    }
     let (mut n0, mut d0, mut n1, mut d1) = (0.0, 1.0, 1.0, 0.0);
     // The denominators grow at least as the Fibonacci numbers: 40 steps reach 2^27.
     for _ in 0..42 {
@@ -198,6 +204,52 @@ fn floor(x: f64) -> f64 {
 
 /// How often `n / d` is a root of the polynomial, exactly. `n` and `d` are whole numbers up to 2^28.
 fn multiplicity_at<P: Product>(c: &[f64; 5], n: f64, d: f64, degree: usize) -> u32 {
+    // By division while all its steps are exact, as they are for numbers of few digits; then by expansions.
+    let mut c = *c;
+    for found in 0..degree {
+        let degree = degree - found;
+        if clearly_not_zero(&c, n, d, degree) {
+            return found as u32;
+        }
+        match divided::<P>(&c, n, d, degree) {
+            Some(quotient) => c = quotient,
+            None => return found as u32 + order_of_zero::<P>(&c, n, d, degree),
+        }
+    }
+    degree as u32
+}
+
+/// Whether `n / d` is no root already in plain arithmetic.
+fn clearly_not_zero(c: &[f64; 5], n: f64, d: f64, degree: usize) -> bool {
+    let (mut value, mut size, mut power) = (c[degree], c[degree].abs(), 1.0);
+    for k in (0..degree).rev() {
+        power *= d;
+        value = value * n + c[k] * power;
+        size = size * n.abs() + (c[k] * power).abs();
+    }
+    // Four steps of three roundings and the powers' own, of the magnitudes each: below 16 u.
+    value.abs() > 16.0 * f64::EPSILON * size
+}
+
+/// The quotient of the polynomial and `d x - n`, if there is no remainder and no step is rounded.
+fn divided<P: Product>(c: &[f64; 5], n: f64, d: f64, degree: usize) -> Option<[f64; 5]> {
+    let mut quotient = [0.0; 5];
+    let (mut sum, mut rounding) = (c[degree], 0.0);
+    for k in (0..degree).rev() {
+        // c[k + 1] + n quotient[k + 1] = d quotient[k]
+        let q = sum / d;
+        let (p, e) = P::two_product(q, n);
+        if rounding != 0.0 || P::remainder(sum, q, d) != 0.0 || e != 0.0 {
+            return None;
+        }
+        quotient[k] = q;
+        (sum, rounding) = two_sum(c[k], p);
+    }
+    if sum == 0.0 { Some(quotient) } else { None }
+}
+
+/// How often `n / d` is a root, by the signs of the derivatives there.
+fn order_of_zero<P: Product>(c: &[f64; 5], n: f64, d: f64, degree: usize) -> u32 {
     for order in 0..degree {
         // The order-th derivative over order!, times d^(degree - order), term by term.
         let mut sum = Expansion::zero();

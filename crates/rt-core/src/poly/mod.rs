@@ -46,14 +46,18 @@ pub struct Root<T = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roots<const N: usize, T = f64> {
     list: [Root<T>; N],
+    /// How many of the list count, or [`ALL`]. One word, as the others: a copy made as soon as the parts are written
+    /// would wait for parts smaller than those it reads.
     len: usize,
-    all: bool,
 }
+
+/// The length that says that every number is a root.
+const ALL: usize = usize::MAX;
 
 impl<const N: usize, T: Copy + Default> Default for Roots<N, T> {
     #[inline]
     fn default() -> Self {
-        Roots { list: [Root::default(); N], len: 0, all: false }
+        Roots { list: [Root::default(); N], len: 0 }
     }
 }
 
@@ -61,13 +65,13 @@ impl<const N: usize, T: Copy + Default> Roots<N, T> {
     /// Whether every number is a root: the polynomial is zero.
     #[inline]
     pub fn all(&self) -> bool {
-        self.all
+        self.len == ALL
     }
 
     /// The answer for the zero polynomial.
     #[inline]
     pub(crate) fn everything() -> Self {
-        Roots { all: true, ..Roots::default() }
+        Roots { len: ALL, ..Roots::default() }
     }
 
     /// Appends a root; the caller keeps the order. What does not fit is dropped: a polynomial of degree `N` cannot
@@ -115,7 +119,7 @@ impl<const N: usize> Roots<N> {
     /// The roots inside the interval, in a list of another capacity.
     #[inline]
     pub(crate) fn within<const M: usize>(&self, within: Interval) -> Roots<M> {
-        let mut kept = Roots { all: self.all, ..Roots::default() };
+        let mut kept = if self.all() { Roots::everything() } else { Roots::default() };
         for root in self.iter().filter(|root| within.contains(root.x)) {
             kept.push(root.x, root.multiplicity);
         }
@@ -123,7 +127,7 @@ impl<const N: usize> Roots<N> {
     }
 }
 
-/// What the quick ways find: simple roots, ascending. Only numbers, so that [`Roots`] are written once, where they are
+/// What the quick ways find: simple roots, ascending, three at most. Only numbers, so that [`Roots`] are written once, where they are
 /// returned: a copy of what was just written piece by piece costs as much as a division.
 #[derive(Clone, Copy)]
 enum Simple<const N: usize> {
@@ -135,24 +139,24 @@ enum Simple<const N: usize> {
 impl<const N: usize> Simple<N> {
     /// As a list, only those inside the interval.
     #[inline(always)]
-    fn inside<const M: usize>(self, within: Interval) -> Roots<M> {
+    fn inside<const M: usize>(self, within: &Interval) -> Roots<M> {
+        // The arguments in registers; NaN lies in no interval.
         #[cold]
         #[inline(never)]
-        fn selected<const K: usize, const M: usize>(x: [f64; K], within: Interval) -> Roots<M> {
+        fn selected<const M: usize>(x: f64, y: f64, z: f64, within: Interval) -> Roots<M> {
             let mut roots = Roots::default();
-            x.iter().filter(|&&x| within.contains(x)).for_each(|&x| roots.push(x, 1));
+            [x, y, z].iter().filter(|&&x| within.contains(x)).for_each(|&x| roots.push(x, 1));
             roots
         }
         #[inline(always)]
-        fn list<const K: usize, const M: usize>(x: [f64; K], within: Interval) -> Roots<M> {
-            // With the first and the last all are inside.
-            if !(x.first().is_some_and(|&x| within.contains(x))
-                && x.last().is_some_and(|&x| within.contains(x)))
-            {
-                return selected(x, within);
+        fn list<const K: usize, const M: usize>(x: [f64; K], within: &Interval) -> Roots<M> {
+            // They ascend: if the first and the last are not beyond its end, all are inside.
+            if !(x.first().is_some_and(|&x| within.min < x) && x.last().is_some_and(|&x| x < within.max)) {
+                let at = |i: usize| x.get(i).copied().unwrap_or(f64::NAN);
+                return selected(at(0), at(1), at(2), *within);
             }
             let root = |i: usize| x.get(i).map_or(Root::default(), |&x| Root { x, multiplicity: 1 });
-            Roots { list: core::array::from_fn(root), len: K, all: false }
+            Roots { list: core::array::from_fn(root), len: K }
         }
         match self {
             Simple::None => Roots::default(),
@@ -166,7 +170,7 @@ impl<const N: usize> Roots<N, Double> {
     /// The roots rounded to `f64`; those too large for it are left out.
     #[inline]
     pub(crate) fn rounded(&self) -> Roots<N> {
-        let mut kept = Roots { all: self.all, ..Roots::default() };
+        let mut kept = if self.all() { Roots::everything() } else { Roots::default() };
         for root in self.iter() {
             let x = root.x.to_f64();
             if x.is_finite() {

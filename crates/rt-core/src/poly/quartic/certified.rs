@@ -8,10 +8,11 @@
 //!    critical points, with exact expansions.
 
 use super::super::{Roots, bracket};
+use super::split::Factor;
 use super::{discs, factors, split};
 use crate::Interval;
 use crate::double::Double;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Product, Solver, Task, run, solve};
 use crate::math::{exp2i, exponent};
 
 /// The real roots inside `within` of `c[0] + c[1] x + c[2] x^2 + c[3] x^3 + c[4] x^4`.
@@ -44,7 +45,7 @@ pub fn quartic(c: [f64; 5], within: Interval) -> Roots<4> {
     if !c.iter().all(|c| c.is_finite()) {
         return Roots::default();
     }
-    run(Quartic { c }).inside(within)
+    solve::<Quartic>(c, within)
 }
 
 /// The real roots of a quartic whose coefficients (ascending powers) are given in double-double, in double-double.
@@ -60,25 +61,23 @@ pub fn double(c: [Double; 5]) -> Roots<4, Double> {
     run(Careful { c })
 }
 
-struct Quartic {
-    c: [f64; 5],
-}
+struct Quartic;
 
-impl Task for Quartic {
+impl Solver for Quartic {
     type Output = Roots<4>;
     #[inline(always)]
-    fn run<P: Product>(self) -> Self::Output {
-        all_roots::<P>(&self.c)
+    fn solve<P: Product>(c: [f64; 5], within: Interval) -> Roots<4> {
+        all_roots::<P>(&c).inside(within)
     }
 }
 
 /// All real roots of a polynomial of any degree up to four, finite coefficients.
 #[inline(always)]
 pub(in super::super) fn all_roots<P: Product>(c: &[f64; 5]) -> Roots<4> {
-    let quick = if c[0] != 0.0 && c[4] != 0.0 { quick::<P>(c) } else { lower::<P>(c) };
-    match quick {
+    let whole = c[0] != 0.0 && c[4] != 0.0;
+    match if whole { quick::<P>(c) } else { lower::<P>(c) } {
         Some(roots) => roots,
-        None => careful::<P>(c),
+        None => doubtful::<P>(c, whole),
     }
 }
 
@@ -109,40 +108,20 @@ fn lower<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
             roots.push(x, 1);
             Some(with_zeros(roots))
         }
-        2 => {
-            let c = [d[0], d[1], d[2]];
-            let roots = super::super::quadratic::quick::<P>(&c).map(|roots| roots.inside(Interval::LINE));
-            roots.or_else(|| quadratic::<P>(&c)).map(with_zeros)
-        }
+        2 => super::super::quadratic::balanced::<P>(&[d[0], d[1], d[2]], true).map(with_zeros),
         3 => {
-            let roots = super::super::cubic::quick::<P>(&[d[0], d[1], d[2], d[3]]);
-            let roots = roots.map(|roots| roots.inside(Interval::LINE));
+            let roots = super::super::cubic::balanced::<P>(&[d[0], d[1], d[2], d[3]]);
             roots.or_else(|| quick::<P>(&[0.0, d[0], d[1], d[2], d[3]])).map(with_zeros)
         }
         _ => None,
     }
 }
 
-/// The roots of a quadratic whose outer coefficients are not zero; `None` in doubt.
-#[inline(always)]
-fn quadratic<P: Product>(c: &[f64; 3]) -> Option<Roots<4>> {
-    let e = c.map(exponent);
-    let near = |e: i32| (-400..=400).contains(&e);
-    // x = y 2^k with k half the difference of the outer exponents, and the leading coefficient brought to about 1.
-    let k = (e[0] - e[2]) >> 1;
-    if !(near(e[0]) && near(e[2]) && (c[1] == 0.0 || near(e[1])) && near(e[1].max(-400) - e[2] - k)) {
-        return None;
-    }
-    let s = exp2i(-e[2]);
-    let i = exp2i(-k);
-    let [n, m, l] = [c[0] * s * i * i, c[1] * s * i, c[2] * s];
-    // Squares and their low parts stay above 2^-968.
-    let small = m != 0.0 && exponent(m) < -200 || exponent(m) > 200;
-    if small { None } else { Some(factors::quadratic::<P>(n, m, l)?.scaled(exp2i(k))) }
-}
-
 #[inline(never)]
-fn careful<P: Product>(c: &[f64; 5]) -> Roots<4> {
+fn doubtful<P: Product>(c: &[f64; 5], whole: bool) -> Roots<4> {
+    if whole && let Some(roots) = torn::<P>(c) {
+        return roots;
+    }
     bracket::solve::<P, 4>(&c.map(Double::from)).rounded()
 }
 
@@ -154,13 +133,98 @@ pub(in super::super) fn quick<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
         let inverse = 1.0 / y[4];
         split::split(y[0] * inverse, y[1] * inverse, y[2] * inverse, y[3] * inverse)
     };
-    let mut roots = monic(&y).and_then(|f| discs::roots::<P>(&y, &f));
+    let mut roots = if spread > GAP { parted(&y).and_then(|f| discs::roots::<P>(&y, &f)) } else { None };
+    if roots.is_none() {
+        roots = monic(&y).and_then(|f| discs::roots::<P>(&y, &f));
+    }
     if roots.is_none() && spread > 4 && y[0] != 0.0 {
         // Roots of very different size: the small ones are the great ones of the reversed polynomial.
         roots = reversed(&y, spread).and_then(|f| discs::roots::<P>(&y, &f));
     }
     let roots = roots.or_else(|| factors::roots::<P>(&y))?;
     Some(roots.scaled(exp2i(exponent)))
+}
+
+/// Roots that are apart by more than this power of two are taken apart before anything is computed: what is left of the
+/// others' influence, 2^-30 or so, goes with the first corrections.
+const GAP: i32 = 30;
+
+/// Where the roots fall apart into small and large ones: the place in the coefficients, and the power of two between them.
+///
+/// With the exponents `e` the small ones, those of `c[0] + .. + c[j] x^j`, are not much beyond the greatest of
+/// `(e[i] - e[j]) / (j - i)`, and the large ones, those of `c[j] + .. + c[n] x^(n - j)`, not much below the least of
+/// `(e[j] - e[k]) / (k - j)` (Newton's polygon).
+#[inline(always)]
+fn widest_gap<const N: usize>(c: &[f64; N]) -> (usize, i32) {
+    let e = c.map(exponent);
+    let mut widest = (0, 0);
+    for j in 1..N - 1 {
+        let small = (0..j).map(|i| (e[i] - e[j]).div_euclid((j - i) as i32) + 1).max().unwrap_or(0);
+        let large = (j + 1..N).map(|k| (e[j] - e[k]).div_euclid((k - j) as i32)).min().unwrap_or(0);
+        if c[j] != 0.0 && large - small > widest.1 {
+            widest = (j, large - small);
+        }
+    }
+    widest
+}
+
+/// The approximate factors of a quartic whose roots are of very different size; `None` if they are not.
+#[inline(never)]
+fn parted(c: &[f64; 5]) -> Option<[Factor; 2]> {
+    let [c0, c1, c2, c3, c4] = *c;
+    let factor = |c0: f64, c1: f64, c2: f64| Factor { linear: c1 / c2, constant: c0 / c2 };
+    let of = |x: f64, y: f64| Factor { linear: -(x + y), constant: x * y };
+    match widest_gap(c) {
+        (1, GAP..) => {
+            let (x, rest) = parted_cubic(&[c1, c2, c3, c4]);
+            Some([of(x, -c0 / c1), rest])
+        }
+        (2, GAP..) => Some([factor(c2, c3, c4), factor(c0, c1, c2)]),
+        (3, GAP..) => {
+            let (x, rest) = parted_cubic(&[c0, c1, c2, c3]);
+            Some([of(x, -c3 / c4), rest])
+        }
+        _ => None,
+    }
+}
+
+/// The roots of a quartic that falls into two polynomials which do not feel each other: each is the product of the other's
+/// nearest coefficient and a power series in which a step is below 2^-118. `None` in doubt.
+#[inline(never)]
+fn torn<P: Product>(c: &[f64; 5]) -> Option<Roots<4>> {
+    use super::super::{cubic, quadratic};
+    let linear = |c0: f64, c1: f64| {
+        let x = -c0 / c1;
+        let mut roots = Roots::default();
+        roots.push(x, 1);
+        if x.is_normal() { Some(roots) } else { None }
+    };
+    let [c0, c1, c2, c3, c4] = *c;
+    if c.iter().any(|&c| c != 0.0 && !c.is_normal()) {
+        return None;
+    }
+    let (one, other): (Roots<4>, Roots<4>) = match widest_gap(c) {
+        (1, 120..) => (linear(c0, c1)?, cubic::balanced::<P>(&[c1, c2, c3, c4])?),
+        (2, 120..) => {
+            (quadratic::balanced::<P>(&[c0, c1, c2], false)?, quadratic::balanced::<P>(&[c2, c3, c4], false)?)
+        }
+        (3, 120..) => (linear(c3, c4)?, cubic::balanced::<P>(&[c0, c1, c2, c3])?),
+        _ => return None,
+    };
+    let mut roots = one;
+    other.iter().for_each(|root| roots.insert(root.x, root.multiplicity));
+    Some(roots)
+}
+
+/// An approximate root and the factor of the others, of a cubic.
+#[inline(always)]
+fn parted_cubic(c: &[f64; 4]) -> (f64, Factor) {
+    let [c0, c1, c2, c3] = *c;
+    match widest_gap(c) {
+        (1, GAP..) => (-c0 / c1, Factor { linear: c2 / c3, constant: c1 / c3 }),
+        (2, GAP..) => (-c2 / c3, Factor { linear: c1 / c2, constant: c0 / c2 }),
+        _ => split::cubic(c0 / c3, c1 / c3, c2 / c3),
+    }
 }
 
 /// The factors by way of the reversed polynomial, whose greatest root is about `2^spread`.

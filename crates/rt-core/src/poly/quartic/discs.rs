@@ -144,14 +144,16 @@ fn two<P: Product>(c: &[f64; 5], mut x: [f64; 2], z: &Pair) -> Option<Roots<4>> 
             noise[i] = (size[i] * inverse).abs() * exp2i(-100);
             radius[i] = 4.01 * (w[i].abs() + noise[i]);
         }
-        // The disc of the pair misses the axis by 3/4 of its height; those on the axis are smaller than that.
+        // The disc of the pair misses the axis by 3/4 of its height, and those on the axis, of a quarter of the distance
+        // to it at most.
         let mut apart = radius_z + z.blur() < 0.25 * z.im;
         let mut done = true;
         let mut sum = 0.0;
         for i in 0..2 {
-            let share = radius[1 - i] / gap.abs() + 2.0 * radius_z / sqrt(far[i]);
+            let distance = sqrt(far[i]);
+            let share = radius[1 - i] / gap.abs() + 2.0 * radius_z / distance;
             sum += share;
-            apart &= share < 0.125 && radius[i] < 0.25 * z.im;
+            apart &= share < 0.125 && radius[i] < 0.25 * distance;
             let next = x[i] - w[i];
             done &= w[i].abs() * (1.2 * share + exp2i(-48)) + noise[i] <= LEFT * next.abs();
             x[i] = next;
@@ -202,7 +204,8 @@ impl Pair {
             linear: f.linear,
             constant: f.constant,
             re: -0.5 * f.linear,
-            im: sqrt(-d),
+            // Plus zero if it is zero: then no disc is small enough.
+            im: sqrt(0.0 - d),
             modulus: sqrt(constant),
         }
     }

@@ -2,7 +2,7 @@
 
 mod certified;
 pub(super) mod discs;
-mod factors;
+pub(super) mod factors;
 mod ferrari;
 mod graphics_gems;
 pub(super) mod split;

@@ -86,9 +86,25 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
     if sound { Some([f, g]) } else { None }
 }
 
+/// The real root of `x^3 + a x^2 + b x + d` that is farthest from the others, and their factor: by division from the end
+/// where it is stable.
+#[inline(always)]
+pub(super) fn cubic(d: f64, b: f64, a: f64) -> (f64, Factor) {
+    let t = a * (1.0 / 3.0);
+    let t2 = t * t;
+    let x = isolated_root(b - 3.0 * t2, d - t * (b - 2.0 * t2)) - t;
+    let constant = -d / x;
+    let rest = if (x * x * x).abs() > d.abs() {
+        Factor { linear: (constant - b) / x, constant }
+    } else {
+        Factor { linear: a + x, constant: b + (a + x) * x }
+    };
+    (x, rest)
+}
+
 /// The real root of `y^3 + m y + n` farthest from the others, to about 1e-13.
 #[inline(always)]
-pub(in super::super) fn isolated_root(m: f64, n: f64) -> f64 {
+fn isolated_root(m: f64, n: f64) -> f64 {
     let (q, h) = (m * (1.0 / 3.0), 0.5 * n.abs());
     let discriminant = h * h + q * q * q;
     let mut y = if discriminant < 0.0 {
