@@ -279,6 +279,53 @@ proptest! {
     }
 }
 
+/// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
+#[test]
+fn packets_of_rays_that_graze_spheres() {
+    let unit = |i: u32| {
+        // Three low-discrepancy numbers (multiples of the inverse of the plastic number and of its powers).
+        DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0
+    };
+    for (scale, offset) in [(1.0, 0.0), (1e-3, 1e3), (1e6, 1e9), (2_f64.powi(-80), 0.0)] {
+        let mut builder = Geometry::builder();
+        for i in 0..600 {
+            let radius = scale * 0.03 * (0.2 + f64::from(i % 7) / 7.0);
+            builder.push(Sphere::new(unit(i) * scale + offset, radius).unwrap());
+        }
+        let geometry = builder.build();
+        for (far, count) in [(0.0, 32), (1.5, 32), (50.0, 21), (1e4, 16)] {
+            for i in 0..40 {
+                let Shape::Sphere(sphere) = &geometry.shapes()[i * 14] else { unreachable!() };
+                let (center, side) = (sphere.center(), (unit(i as u32 + 7) - 0.5).normalize());
+                let origin = center + (DVec3::new(0.3, -1.0, 0.2) * (0.5 + far)) * scale;
+                let across = (center - origin).cross(side).normalize();
+                let rays: Vec<Ray> = (0..count)
+                    .map(|k| {
+                        let step = 2_f64.powi(-(k % 16) * 3 - 4) * if k < 16 { 1.0 } else { -1.0 };
+                        let target = center + across * (sphere.radius() * (1.0 + step));
+                        Ray::new(origin, (target - origin) / scale)
+                    })
+                    .collect();
+                let within = vec![Interval::FORWARD; rays.len()];
+                let (mut found, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+                for level in [Level::Portable, Level::Avx2] {
+                    set_level(level);
+                    geometry.nearest_many(&rays, &within, &mut found);
+                    geometry.occluded_many(&rays, &within, &mut occluded);
+                    for (i, ray) in rays.iter().enumerate() {
+                        let shapes = geometry.shapes().iter();
+                        let hit = shapes.filter_map(|shape| shape.hit(ray, within[i]));
+                        let nearest = hit.min_by(|a, b| a.t().total_cmp(&b.t()));
+                        assert_eq!(found[i].map(|found| found.hit.t()), nearest.map(|hit| hit.t()));
+                        assert_eq!(found[i], geometry.nearest(ray, within[i]));
+                        assert_eq!(occluded[i], found[i].is_some());
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Rays of any bits, legal or not, find the same and never panic.
 #[test]
 fn any_bits() {

@@ -77,11 +77,6 @@ impl Lanes for Avx2Lanes {
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
     }
     #[inline(always)]
-    fn div(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: `self` proves AVX2.
-        unsafe { _mm256_div_ps(a, b) }
-    }
-    #[inline(always)]
     fn inverse(self, a: __m256) -> __m256 {
         // SAFETY: `self` proves AVX2.
         unsafe {

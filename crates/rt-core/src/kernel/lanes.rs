@@ -30,8 +30,6 @@ pub trait Lanes: Copy {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le(self, a: Self::F, b: Self::F) -> u32;
-    /// `a / b`.
-    fn div(self, a: Self::F, b: Self::F) -> Self::F;
     /// `1 / a`, for |a| < 2^-100 that of 2^-100 with its sign.
     fn inverse(self, a: Self::F) -> Self::F;
     /// The least lane; any of the others when some are NaN.
@@ -146,10 +144,6 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn le(self, a: [f32; 8], b: [f32; 8]) -> u32 {
         (0..8).fold(0, |mask, i| mask | (((a[i] <= b[i]) as u32) << i))
-    }
-    #[inline(always)]
-    fn div(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
-        each(a, b, |a, b| a / b)
     }
     #[inline(always)]
     fn inverse(self, a: [f32; 8]) -> [f32; 8] {
