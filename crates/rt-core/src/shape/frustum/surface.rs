@@ -81,6 +81,8 @@ impl Task for FindSurface<'_> {
         let z = f.axis.dot::<P>(local);
         let along = f.axis.mul::<P>(z);
         let away = local - along;
+        // Near the axis what the difference left along it, 2^-104 of the size, would lengthen the normal: once more.
+        let away = away - f.axis.mul::<P>(f.axis.dot::<P>(away));
         let distance = away.length_squared::<P>().sqrt::<P>();
         // `away` is known to 2^-104 of the size: nearer than this it says nothing of a direction that the place, rounded
         // to 2^-53, could not say otherwise.
