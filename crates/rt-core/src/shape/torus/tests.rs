@@ -80,6 +80,25 @@ fn four_crossings_along_x() {
     assert_eq!(torus.hit(&ray, Interval::new(4.25, 5.75)), None);
 }
 
+/// What leaves the pole of a spindle along the axis, where both sheets meet, meets neither on its way out.
+#[test]
+fn out_of_the_pole_of_a_spindle() {
+    for k in 1..200 {
+        let length = f64::from(k) / 7.0;
+        for axis in [DVec3::X * length, DVec3::Y * length, DVec3::new(0.0, length, -0.5 * length)] {
+            let torus = Torus::new(DVec3::ZERO, axis, 0.28125, 1.6 + f64::from(k)).unwrap();
+            let ray = Ray::new(axis * (1000.0 / length), -axis);
+            for hit in all(&torus, &ray).into_iter().take(1) {
+                let surface = torus.surface(&ray, hit);
+                let side = Side::of_arrival(ray.direction, surface.normal);
+                let from = surface.departure(0, hit, side);
+                let (start, within) = from.ray(ray.origin - surface.point);
+                assert_eq!(torus.hit_leaving(&start, within, &from), None, "{torus:?} {surface:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_spindle_has_two_sheets() {
     // (rho - 3)^2 + z^2 = 25: along z = 0 the outer sheet is at rho = 8, the inner at rho = 2.
