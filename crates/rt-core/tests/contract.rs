@@ -1,7 +1,8 @@
 //! The contract of the library's own shapes: what any shape must keep, and what exact ones can.
 //!
-//! `RT_HARD_RAYS` sets the number of hard rays of each kind for `hard_rays` (default 1000); a release run with 1e7
-//! takes minutes. `RT_PROPERTY_CASES` sets the number of cases of each property.
+//! `RT_HARD_RAYS` sets how many hard rays of each of five kinds are cast at each shape in each of four places (default
+//! 1000), `RT_HARD_SEED` which ones: a long run can be made of several. `RT_PROPERTY_CASES` sets the number of cases of
+//! each property.
 #![cfg(feature = "testing")]
 
 use proptest::prelude::*;
@@ -599,16 +600,19 @@ fn no_bits_make_it_panic() {
 }
 
 /// A seeded run of hard rays for each shape, at several sizes and places.
-fn hard_rays(spec: Spec) {
-    let count = std::env::var("RT_HARD_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
-    for (seed, (scale, offset)) in [(1.0, 0.0), (1.0, 1e6), (1e-9, 0.0), (1e9, 1e12)].into_iter().enumerate()
-    {
+fn hard_rays(name: &str, spec: Spec) {
+    let setting = |name: &str| std::env::var(name).ok().map(|n| n.parse::<u32>().expect(name));
+    let count = setting("RT_HARD_RAYS").unwrap_or(1000);
+    let first = setting("RT_HARD_SEED").unwrap_or(0);
+    let places = [(1.0, 0.0), (1.0, 1e6), (1e-9, 0.0), (1e9, 1e12)];
+    for (i, (scale, offset)) in (0..).zip(places) {
         let spec = spec.map(|p| p * scale + DVec3::new(offset, -offset, 0.5 * offset), |d| d, scale);
         let shape = spec.build().unwrap();
-        let effort = Effort::new(seed as u64, count);
+        let effort = Effort::new(u64::from(first) * 4 + i, count);
         let effort = if spec.closed() { effort.closed() } else { effort };
         check_primitive(&shape, &effort).unwrap_or_else(|failure| panic!("{spec:?}: {failure}"));
     }
+    println!("{name}: seeds from {}, {} rays of each of 5 kinds", u64::from(first) * 4, 4 * u64::from(count));
 }
 
 macro_rules! hard_rays {
@@ -617,7 +621,7 @@ macro_rules! hard_rays {
             use super::*;
             $(#[test]
             fn $name() {
-                hard_rays($spec);
+                hard_rays(stringify!($name), $spec);
             })*
         }
     };
