@@ -656,3 +656,151 @@ fn turned_cuboids() {
         check_primitive(&shape, &Effort::new(7, 1000).closed()).unwrap_or_else(|failure| panic!("{failure}"));
     }
 }
+
+/// A sphere that breaks one promise, now and then.
+#[derive(Debug)]
+struct Broken {
+    sphere: Shape,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    Panic,
+    InvalidRay,
+    OutsideInterval,
+    SplitInterval,
+    HitAgain,
+    Odd,
+    Unsorted,
+    Missed,
+    Moody,
+    Length,
+    NotFinite,
+    Normal,
+    ShadingNormal,
+    OffTheRay,
+    Bounds,
+    WayBack,
+}
+
+impl Broken {
+    /// Hits at negative `x`, so that half of the rays see the fault.
+    fn struck(&self, ray: &Ray, hit: Hit) -> bool {
+        self.sphere.surface(ray, hit).point.x < 0.0
+    }
+}
+
+impl Primitive for Broken {
+    fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if self.fault == Fault::InvalidRay && !ray.is_valid() {
+            return Interval::LINE.admit(1.0, 0, 0);
+        }
+        let Some(hit) = self.sphere.hit(ray, within) else {
+            // A little of what is outside.
+            let wider = within.until(within.max * 1.01);
+            return match self.fault {
+                Fault::OutsideInterval => self.sphere.hit(ray, wider),
+                _ => None,
+            };
+        };
+        match self.fault {
+            Fault::Panic if !ray.origin.x.is_normal() => panic!("on purpose"),
+            Fault::SplitInterval if within.min > 0.0 => None,
+            Fault::HitAgain => within.admit(hit.t().next_down(), 0, 0),
+            Fault::Missed if self.struck(ray, hit) => None,
+            Fault::Moody if within.max == f64::INFINITY => {
+                static CALLS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+                let call = CALLS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                Interval::LINE.admit(hit.t(), 0, call % 2)
+            }
+            Fault::Length if ray.direction.length_squared() > 2.0 => {
+                Interval::LINE.admit(hit.t().next_up(), 0, hit.root())
+            }
+            _ => Some(hit),
+        }
+    }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        let mut hits = Vec::new();
+        self.sphere.crossings(ray, within, &mut |hit| hits.push(hit));
+        if self.fault == Fault::Odd && hits.len() == 2 {
+            hits.pop();
+        }
+        if self.fault == Fault::Unsorted {
+            hits.reverse();
+        }
+        hits.into_iter().for_each(each);
+    }
+
+    fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
+        let mut surface = self.sphere.surface(ray, hit);
+        if !self.struck(ray, hit) {
+            return surface;
+        }
+        match self.fault {
+            Fault::NotFinite => surface.local.y = f64::INFINITY,
+            Fault::Normal => surface.normal *= 1.0 + 1e-14,
+            Fault::ShadingNormal => surface.shading_normal *= 1.0 - 1e-14,
+            Fault::OffTheRay => surface.error = surface.error * 1e-3,
+            _ => {}
+        }
+        if self.fault == Fault::OffTheRay {
+            surface.point += ray.direction.any_orthonormal_vector() * 1e-9;
+        }
+        surface
+    }
+
+    fn bounds(&self) -> Option<rt_core::Aabb> {
+        let mut bounds = self.sphere.bounds()?;
+        if self.fault == Fault::Bounds {
+            bounds.min.x += 0.01;
+        }
+        Some(bounds)
+    }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &rt_core::Departure) -> Option<Hit> {
+        if self.fault == Fault::WayBack {
+            let point = from.ray(ray.direction).0.origin;
+            return Interval::LINE.admit(if point.x < 0.0 { 1e-3 } else { return None }, 1, 0);
+        }
+        self.sphere.hit_leaving(ray, within, from)
+    }
+}
+
+/// `check_primitive` finds each fault, and finds none where there is none.
+#[test]
+fn broken_shapes_are_found() {
+    use Fault::*;
+    let expected = [
+        (Panic, "no panic"),
+        (InvalidRay, "no panic"),
+        (OutsideInterval, "an interval that"),
+        (SplitInterval, "a split interval"),
+        (HitAgain, "an interval that"),
+        (Odd, "a closed shape"),
+        (Unsorted, "crossings ascend"),
+        (Missed, "the first hit is the first crossing"),
+        (Moody, "the same question"),
+        (Length, "twice the direction"),
+        (NotFinite, "a surface record is finite"),
+        (Normal, "a normal has unit length"),
+        (ShadingNormal, "a normal has unit length"),
+        (OffTheRay, "the point is on the ray"),
+        (Bounds, "the bounds contain"),
+        (WayBack, "nothing lies on the way back"),
+    ];
+    let check = |fault: Fault, closed: bool| {
+        let sphere = rt_core::shape::Sphere::new([0.5, -0.25, 0.0], 1.25).unwrap().into();
+        let effort = Effort::new(5, 300);
+        check_primitive(&Broken { sphere, fault }, &if closed { effort.closed() } else { effort })
+    };
+    assert_eq!(check(None, true), Ok(()));
+    assert_eq!(check(Odd, false).map_err(|f| f.promise), Ok(()), "odd, but not said to be closed");
+    for (fault, promise) in expected {
+        let failure = check(fault, true).expect_err(&format!("{fault:?}"));
+        assert!(failure.promise.starts_with(promise), "{fault:?}: {failure}");
+        assert!(failure.to_string().starts_with("broken: "));
+    }
+}
