@@ -645,6 +645,17 @@ hard_rays! {
     triangle: Triangle { a: DVec3::ZERO, b: DVec3::new(2.0, 0.5, 0.0), c: DVec3::new(0.0, 1.0, 1.0) };
 }
 
+/// Needles: at the tip the walls are nearer to each other than a place is known.
+#[test]
+fn needles() {
+    for seed in 0..40 {
+        let base = DVec3::new(73.5390625, 0.0, 0.0);
+        let needle = rt_core::shape::Cone::new(base, 9.536743164085997e-7, DVec3::ZERO, 0.0).unwrap();
+        check_primitive(&needle, &Effort::new(seed, 500).closed())
+            .unwrap_or_else(|failure| panic!("{seed}: {failure}"));
+    }
+}
+
 /// A turned box keeps the contract of any closed convex shape.
 #[test]
 fn turned_cuboids() {
