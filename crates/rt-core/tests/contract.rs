@@ -754,7 +754,7 @@ impl Primitive for Broken {
             Fault::NotFinite => surface.local.y = f64::INFINITY,
             Fault::Normal => surface.normal *= 1.0 + 1e-14,
             Fault::ShadingNormal => surface.shading_normal *= 1.0 - 1e-14,
-            Fault::OffTheRay => surface.error = surface.error * 1e-3,
+            Fault::OffTheRay => surface.error *= 1e-3,
             _ => {}
         }
         if self.fault == Fault::OffTheRay {

@@ -5,6 +5,9 @@ use super::{discs, split};
 use crate::kernel::{Product, Task, run};
 use proptest::prelude::*;
 
+/// Real roots and complex pairs.
+type Case<'a> = (&'a [f64], &'a [(f64, f64)]);
+
 /// Roots, and complex pairs as their quadratics, multiplied out.
 fn expanded(roots: &[f64], pairs: &[(f64, f64)], lead: f64) -> [f64; 5] {
     let mut c = [lead, 0.0, 0.0, 0.0, 0.0];
@@ -61,7 +64,7 @@ proptest! {
     fn first_ways_answer(x in apart(), re in [-1.0..1.0_f64, -1.0..1.0], im in [0.3..1.0_f64, 1.1..2.0],
                          lead in prop_oneof![Just(1.0), -8.0..-0.1_f64, 0.1..8.0]) {
         let pairs = [(re[0], im[0]), (re[1], im[1])];
-        let cases: [(&[f64], &[(f64, f64)]); 7] = [
+        let cases: [Case<'_>; 7] = [
             (&x, &[]), (&x[1..3], &pairs[..1]), (&[], &pairs), (&x[..3], &[]), (&x[1..2], &pairs[..1]),
             (&x[..2], &[]), (&[], &pairs[..1]),
         ];
