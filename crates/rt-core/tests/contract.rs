@@ -1,7 +1,8 @@
 //! The contract of the library's own shapes: what any shape must keep, and what exact ones can.
 //!
-//! `RT_HARD_RAYS` sets the number of hard rays of each kind for `hard_rays` (default 1000); a release run with 1e7
-//! takes minutes. `RT_PROPERTY_CASES` sets the number of cases of each property.
+//! `RT_HARD_RAYS` sets how many hard rays of each of five kinds are cast at each shape in each of four places (default
+//! 1000), `RT_HARD_SEED` which ones: a long run can be made of several. `RT_PROPERTY_CASES` sets the number of cases of
+//! each property.
 #![cfg(feature = "testing")]
 
 use proptest::prelude::*;
@@ -599,16 +600,19 @@ fn no_bits_make_it_panic() {
 }
 
 /// A seeded run of hard rays for each shape, at several sizes and places.
-fn hard_rays(spec: Spec) {
-    let count = std::env::var("RT_HARD_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1000);
-    for (seed, (scale, offset)) in [(1.0, 0.0), (1.0, 1e6), (1e-9, 0.0), (1e9, 1e12)].into_iter().enumerate()
-    {
+fn hard_rays(name: &str, spec: Spec) {
+    let setting = |name: &str| std::env::var(name).ok().map(|n| n.parse::<u32>().expect(name));
+    let count = setting("RT_HARD_RAYS").unwrap_or(1000);
+    let first = setting("RT_HARD_SEED").unwrap_or(0);
+    let places = [(1.0, 0.0), (1.0, 1e6), (1e-9, 0.0), (1e9, 1e12)];
+    for (i, (scale, offset)) in (0..).zip(places) {
         let spec = spec.map(|p| p * scale + DVec3::new(offset, -offset, 0.5 * offset), |d| d, scale);
         let shape = spec.build().unwrap();
-        let effort = Effort::new(seed as u64, count);
+        let effort = Effort::new(u64::from(first) * 4 + i, count);
         let effort = if spec.closed() { effort.closed() } else { effort };
         check_primitive(&shape, &effort).unwrap_or_else(|failure| panic!("{spec:?}: {failure}"));
     }
+    println!("{name}: seeds from {}, {} rays of each of 5 kinds", u64::from(first) * 4, 4 * u64::from(count));
 }
 
 macro_rules! hard_rays {
@@ -617,7 +621,7 @@ macro_rules! hard_rays {
             use super::*;
             $(#[test]
             fn $name() {
-                hard_rays($spec);
+                hard_rays(stringify!($name), $spec);
             })*
         }
     };
@@ -641,6 +645,17 @@ hard_rays! {
     triangle: Triangle { a: DVec3::ZERO, b: DVec3::new(2.0, 0.5, 0.0), c: DVec3::new(0.0, 1.0, 1.0) };
 }
 
+/// Needles: at the tip the walls are nearer to each other than a place is known.
+#[test]
+fn needles() {
+    for seed in 0..40 {
+        let base = DVec3::new(73.5390625, 0.0, 0.0);
+        let needle = rt_core::shape::Cone::new(base, 9.536743164085997e-7, DVec3::ZERO, 0.0).unwrap();
+        check_primitive(&needle, &Effort::new(seed, 500).closed())
+            .unwrap_or_else(|failure| panic!("{seed}: {failure}"));
+    }
+}
+
 /// A turned box keeps the contract of any closed convex shape.
 #[test]
 fn turned_cuboids() {
@@ -650,5 +665,153 @@ fn turned_cuboids() {
         let cuboid = rt_core::shape::Cuboid::new([-1.0, -2.0, -0.5], [1.0, 2.0, 0.5]).unwrap();
         let shape = cuboid.transformed(&turn).unwrap();
         check_primitive(&shape, &Effort::new(7, 1000).closed()).unwrap_or_else(|failure| panic!("{failure}"));
+    }
+}
+
+/// A sphere that breaks one promise, now and then.
+#[derive(Debug)]
+struct Broken {
+    sphere: Shape,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    Panic,
+    InvalidRay,
+    OutsideInterval,
+    SplitInterval,
+    HitAgain,
+    Odd,
+    Unsorted,
+    Missed,
+    Moody,
+    Length,
+    NotFinite,
+    Normal,
+    ShadingNormal,
+    OffTheRay,
+    Bounds,
+    WayBack,
+}
+
+impl Broken {
+    /// Hits at negative `x`, so that half of the rays see the fault.
+    fn struck(&self, ray: &Ray, hit: Hit) -> bool {
+        self.sphere.surface(ray, hit).point.x < 0.0
+    }
+}
+
+impl Primitive for Broken {
+    fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if self.fault == Fault::InvalidRay && !ray.is_valid() {
+            return Interval::LINE.admit(1.0, 0, 0);
+        }
+        let Some(hit) = self.sphere.hit(ray, within) else {
+            // A little of what is outside.
+            let wider = within.until(within.max * 1.01);
+            return match self.fault {
+                Fault::OutsideInterval => self.sphere.hit(ray, wider),
+                _ => None,
+            };
+        };
+        match self.fault {
+            Fault::Panic if !ray.origin.x.is_normal() => panic!("on purpose"),
+            Fault::SplitInterval if within.min > 0.0 => None,
+            Fault::HitAgain => within.admit(hit.t().next_down(), 0, 0),
+            Fault::Missed if self.struck(ray, hit) => None,
+            Fault::Moody if within.max == f64::INFINITY => {
+                static CALLS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+                let call = CALLS.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                Interval::LINE.admit(hit.t(), 0, call % 2)
+            }
+            Fault::Length if ray.direction.length_squared() > 2.0 => {
+                Interval::LINE.admit(hit.t().next_up(), 0, hit.root())
+            }
+            _ => Some(hit),
+        }
+    }
+
+    fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
+        let mut hits = Vec::new();
+        self.sphere.crossings(ray, within, &mut |hit| hits.push(hit));
+        if self.fault == Fault::Odd && hits.len() == 2 {
+            hits.pop();
+        }
+        if self.fault == Fault::Unsorted {
+            hits.reverse();
+        }
+        hits.into_iter().for_each(each);
+    }
+
+    fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
+        let mut surface = self.sphere.surface(ray, hit);
+        if !self.struck(ray, hit) {
+            return surface;
+        }
+        match self.fault {
+            Fault::NotFinite => surface.local.y = f64::INFINITY,
+            Fault::Normal => surface.normal *= 1.0 + 1e-14,
+            Fault::ShadingNormal => surface.shading_normal *= 1.0 - 1e-14,
+            Fault::OffTheRay => surface.error *= 1e-3,
+            _ => {}
+        }
+        if self.fault == Fault::OffTheRay {
+            surface.point += ray.direction.any_orthonormal_vector() * 1e-9;
+        }
+        surface
+    }
+
+    fn bounds(&self) -> Option<rt_core::Aabb> {
+        let mut bounds = self.sphere.bounds()?;
+        if self.fault == Fault::Bounds {
+            bounds.min.x += 0.01;
+        }
+        Some(bounds)
+    }
+
+    fn hit_leaving(&self, ray: &Ray, within: Interval, from: &rt_core::Departure) -> Option<Hit> {
+        if self.fault == Fault::WayBack {
+            let point = from.ray(ray.direction).0.origin;
+            return Interval::LINE.admit(if point.x < 0.0 { 1e-3 } else { return None }, 1, 0);
+        }
+        self.sphere.hit_leaving(ray, within, from)
+    }
+}
+
+/// `check_primitive` finds each fault, and finds none where there is none.
+#[test]
+fn broken_shapes_are_found() {
+    use Fault::*;
+    let expected = [
+        (Panic, "no panic"),
+        (InvalidRay, "no panic"),
+        (OutsideInterval, "an interval that"),
+        (SplitInterval, "a split interval"),
+        (HitAgain, "an interval that"),
+        (Odd, "a closed shape"),
+        (Unsorted, "crossings ascend"),
+        (Missed, "the first hit is the first crossing"),
+        (Moody, "the same question"),
+        (Length, "twice the direction"),
+        (NotFinite, "a surface record is finite"),
+        (Normal, "a normal has unit length"),
+        (ShadingNormal, "a normal has unit length"),
+        (OffTheRay, "the point is on the ray"),
+        (Bounds, "the bounds contain"),
+        (WayBack, "nothing lies on the way back"),
+    ];
+    let check = |fault: Fault, closed: bool| {
+        let sphere = rt_core::shape::Sphere::new([0.5, -0.25, 0.0], 1.25).unwrap().into();
+        let effort = Effort::new(5, 300);
+        check_primitive(&Broken { sphere, fault }, &if closed { effort.closed() } else { effort })
+    };
+    assert_eq!(check(None, true), Ok(()));
+    assert_eq!(check(Odd, false).map_err(|f| f.promise), Ok(()), "odd, but not said to be closed");
+    for (fault, promise) in expected {
+        let failure = check(fault, true).expect_err(&format!("{fault:?}"));
+        assert!(failure.promise.starts_with(promise), "{fault:?}: {failure}");
+        assert!(failure.to_string().starts_with("broken: "));
     }
 }

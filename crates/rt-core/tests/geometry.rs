@@ -102,15 +102,34 @@ fn scene(most: usize) -> impl Strategy<Value = Scene> {
 }
 
 impl Scene {
+    fn shapes(&self) -> Vec<Shape> {
+        let all = self.recipes.iter().chain(self.again.iter().map(|i| i.get(&self.recipes)));
+        all.filter_map(|recipe| recipe.shape(self.scale, self.offset)).collect()
+    }
+
     fn geometries(&self) -> (Geometry, Geometry) {
         let mut builder = Geometry::builder();
-        for recipe in self.recipes.iter().chain(self.again.iter().map(|i| i.get(&self.recipes))) {
-            if let Some(shape) = recipe.shape(self.scale, self.offset) {
-                builder.push(shape);
-            }
+        for shape in self.shapes() {
+            builder.push(shape);
         }
         (builder.clone().build(), builder.accelerated(false).build())
     }
+}
+
+/// What a loop over the shapes finds, told without a geometry: the least refined parameter; of equal ones those that
+/// leave a solid before those that enter one, then the earlier.
+fn first_of(shapes: &[Shape], ray: &Ray, within: Interval) -> Option<Found> {
+    let mut best: Option<((f64, bool), Found)> = None;
+    for (object, shape) in (0..).zip(shapes) {
+        if let Some(hit) = shape.hit(ray, within) {
+            let surface = shape.surface(ray, hit);
+            let rank = (surface.t, !(ray.direction.dot(surface.normal) > 0.0));
+            if best.is_none_or(|(least, _)| rank < least) {
+                best = Some((rank, Found { object, hit }));
+            }
+        }
+    }
+    best.map(|(_, found)| found)
 }
 
 #[derive(Clone, Debug)]
@@ -227,6 +246,8 @@ fn compare_cubes(fast: &Geometry, plain: &Geometry, rays: &[(Ray, Interval)]) ->
 
 fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
     let (fast, plain) = scene.geometries();
+    let shapes = scene.shapes();
+    prop_assert_eq!((plain.shapes().len(), fast.shapes().len()), (shapes.len(), shapes.len()));
     let rays: Vec<(Ray, Interval)> = casts.iter().map(|cast| cast.ray(scene)).collect();
     for level in [Level::Portable, Level::Avx2] {
         set_level(level);
@@ -235,6 +256,7 @@ fn compare(scene: &Scene, casts: &[Cast]) -> Result<(), TestCaseError> {
         let (mut leaving, mut leaving_within, mut departures) = (Vec::new(), Vec::new(), Vec::new());
         for (ray, within) in &rays {
             let found = plain.nearest(ray, *within);
+            prop_assert_eq!(found, first_of(&shapes, ray, *within));
             prop_assert_eq!(fast.nearest(ray, *within), found, "nearest {:?} {:?}", ray, within);
             prop_assert_eq!(fast.occluded(ray, *within), plain.occluded(ray, *within));
             prop_assert_eq!(fast.occluded(ray, *within), found.is_some());

@@ -270,6 +270,29 @@ proptest! {
             }
         }
     }
+
+    /// Plates thinner than `f64` can tell from where the ray starts: their caps are told apart all the same, and an
+    /// interval that ends at the nearer one does not hold the other.
+    #[test]
+    fn plates_met_from_afar(axis in direction(), thickness in -11.5..-5.0_f64, radii in [0.5..2.0_f64, 0.5..2.0],
+                            away in direction(), far in 0.0..7.0_f64, aside in vector(0.1)) {
+        let axis = axis.normalize() * 10_f64.powf(thickness);
+        let away = away.normalize() * 10_f64.powf(far);
+        let ray = Ray::new(away + aside, -away);
+        let shapes: [Shape; 2] = [
+            Cylinder::new(DVec3::ZERO, axis, radii[0]).unwrap().into(),
+            Cone::new(DVec3::ZERO, radii[0], axis, radii[1]).unwrap().into(),
+        ];
+        for shape in &shapes {
+            let hits = crossings(shape, &ray, Interval::FORWARD);
+            prop_assert!(hits.is_sorted_by(|a, b| a.t() <= b.t()), "{hits:?}");
+            let first = shape.hit(&ray, Interval::FORWARD);
+            prop_assert_eq!(first, hits.first().copied());
+            if let Some(hit) = first {
+                prop_assert_eq!(shape.hit(&ray, Interval::FORWARD.until(hit.t())), None, "{:?}", hits);
+            }
+        }
+    }
 }
 
 #[test]
@@ -366,6 +389,21 @@ fn a_start_at_the_apex() {
             let surface = cone.surface(&ray, hit);
             assert!((surface.normal.length() - 1.0).abs() < 1e-15, "{surface:?}");
         }
+    }
+}
+
+/// A crossing 2^-71 of the size from the axis: what double-double leaves along the axis of the direction away from it
+/// is no longer nothing.
+#[test]
+fn a_normal_next_to_the_apex() {
+    let base = DVec3::new(-117.3046875, -0.25 - f64::EPSILON, 9.536743164895167e-7);
+    let cone = Cone::new(base, 0.16796875, DVec3::ZERO, 0.0).unwrap();
+    let ray = Ray::new(DVec3::ZERO, [0.0, 9.536761353956535e-7, 0.0038773757987676793]);
+    let hits = crossings(&cone, &ray, Interval::LINE);
+    assert!(!hits.is_empty());
+    for hit in hits {
+        let surface = cone.surface(&ray, hit);
+        assert!((surface.normal.length() - 1.0).abs() < 1e-15, "{surface:?}");
     }
 }
 

@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Either radius may be the larger or zero (then that end is the apex), but not both zero; with equal radii it is a
 /// cylinder. Part 0 is the side, 1 the base cap, 2 the top cap. On the side, root 0 is where the line enters the
 /// endless cone and root 1 where it leaves it; on a cap the root is 0. The normal points outward, away from the axis
-/// on an open one too; at the very apex it is along the axis.
+/// on an open one too; at the very apex it is along the axis, or that of the wall that the line meets there first or last.
 ///
 /// Its own axes are two fixed ones perpendicular to the axis, and the axis. The first is the perpendicular part of
 /// the world axis that makes the largest angle with the cone's (the earlier of x, y, z where two are equal), the

@@ -311,13 +311,16 @@ impl Check<'_> {
     }
 
     /// Whether what was met on the way back is an edge that the ray passed so closely on its way there that rounding
-    /// decides: then the ray itself meets it when moved by some error radii. The start's own surroundings are no edge.
-    fn at_an_edge(&self, ray: &Ray, start: &Surface, met: &Surface) -> bool {
-        let radius = start.error + met.error + 2.0 * U * ray.origin.abs().element_sum();
+    /// decides: then a ray along the same line meets it when moved by some error radii. It begins as far beyond the edge
+    /// as the start is on this side: where the ray itself began, such a move may be nothing. The start's own
+    /// surroundings are no edge.
+    fn at_an_edge(&self, start: &Surface, met: &Surface) -> bool {
+        let way = start.point - met.point;
+        let radius = start.error + met.error + 2.0 * U * way.abs().element_sum();
         let apart = |a: DVec3, b: DVec3| (a - b).length() > 1024.0 * radius;
         apart(start.point, met.point)
             && [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]).any(|aside| {
-                let moved = Ray::new(ray.origin + aside * (8.0 * radius), ray.direction);
+                let moved = Ray::new(met.point - way + aside * (8.0 * radius), way);
                 let first = self.shape.hit(&moved, Interval::FORWARD);
                 first.is_some_and(|hit| !apart(self.shape.surface(&moved, hit).point, met.point))
             })
@@ -354,9 +357,7 @@ impl Check<'_> {
             {
                 Ok(())
             }
-            Some(met) if grazed(met) || self.at_an_edge(ray, surface, &self.shape.surface(&shadow, met)) => {
-                Ok(())
-            }
+            Some(met) if grazed(met) || self.at_an_edge(surface, &self.shape.surface(&shadow, met)) => Ok(()),
             Some(met) => Err(Failure {
                 promise: "nothing lies on the way back from the first hit",
                 ray: shadow,

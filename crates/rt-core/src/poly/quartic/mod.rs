@@ -6,6 +6,8 @@ pub(super) mod factors;
 mod ferrari;
 mod graphics_gems;
 pub(super) mod split;
+#[cfg(test)]
+mod tests;
 
 use super::{Roots, cubic};
 use crate::Interval;

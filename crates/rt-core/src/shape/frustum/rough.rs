@@ -157,6 +157,12 @@ impl Numbers {
         if first == last && first != Zone::Between {
             return Rough::Miss;
         }
+        // Both caps, each parameter in doubt by its margin below: the nearer one as reported must not lie behind the
+        // farther one as it is, lest an interval that ends there still holds that. Their planes are
+        // `height / |z_growth|` apart.
+        if first != Zone::Between && last != Zone::Between && !(self.height > 8.0 * error) {
+            return Rough::Doubt;
+        }
         let crossing = |zone: Zone, s: f64, root: u32| {
             if zone == Zone::Between {
                 return Candidate { t: t0 + s, margin, part: SIDE, root };

@@ -126,6 +126,9 @@ struct Start {
     slope: Double,
     /// Whether `f` is positive on the side that the normal points to: false on the inner sheet of a spindle.
     outer: bool,
+    /// Whether it is where the sheets of a spindle meet on the axis: `f` has no first derivative there, so its sign next
+    /// to the start is that of the second, whatever the side of the one sheet's normal.
+    pole: bool,
 }
 
 impl Start {
@@ -137,10 +140,12 @@ impl Start {
         let across = |v: DoubleVector| v - axis.mul::<P>(v.dot::<P>(axis));
         let mut radial = across(local);
         let mut rho = radial.length_squared::<P>().sqrt::<P>();
-        if rho.high == 0.0 {
+        // The axis is known to 2^-103: of a place on it this much less than the size may be left.
+        let pole = rho.high < exp2i(-90);
+        if pole {
             radial = across(normal);
             rho = radial.length_squared::<P>().sqrt::<P>();
-            if rho.high == 0.0 {
+            if rho.high < exp2i(-90) {
                 (radial, rho) = (torus.frame[0], Double::ONE);
             }
         }
@@ -153,7 +158,13 @@ impl Start {
         let reach = out.scale::<P>(minor);
         let (near, far) = ((reach - rho + major).abs(), (reach - rho - major).abs());
         let outer = near <= far;
-        let rho = if outer { reach + major } else { reach - major };
+        let rho = if pole {
+            Double::ZERO
+        } else if outer {
+            reach + major
+        } else {
+            reach - major
+        };
         let along =
             out.mul::<P>(radial.dot_f64::<P>(ray.direction)) + up.mul::<P>(axis.dot_f64::<P>(ray.direction));
         let slope = rho.mul::<P>(along).scale::<P>(major).scale::<P>(minor).scale_exact(8.0);
@@ -161,6 +172,7 @@ impl Start {
             point: radial.mul::<P>(rho) + axis.mul::<P>(up.scale::<P>(minor)),
             slope: if outer { slope } else { -slope },
             outer,
+            pole,
         }
     }
 }
@@ -181,7 +193,8 @@ impl<F: FnMut(Hit) -> bool> Task for Leave<'_, F> {
             constant: start.slope.div::<P>(line.length),
         };
         // Inside means f < 0.
-        let inside_at_start = (self.from.side == Side::Inside) == start.outer;
+        let inside_at_start =
+            if start.pole { cubic.first.high < 0.0 } else { (self.from.side == Side::Inside) == start.outer };
         let extrema = cubic.extrema::<P>();
         let mut found = Crossings::NONE;
         // The crossings before the start, then the start itself.

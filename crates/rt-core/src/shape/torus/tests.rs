@@ -80,6 +80,25 @@ fn four_crossings_along_x() {
     assert_eq!(torus.hit(&ray, Interval::new(4.25, 5.75)), None);
 }
 
+/// What leaves the pole of a spindle along the axis, where both sheets meet, meets neither on its way out.
+#[test]
+fn out_of_the_pole_of_a_spindle() {
+    for k in 1..200 {
+        let length = f64::from(k) / 7.0;
+        for axis in [DVec3::X * length, DVec3::Y * length, DVec3::new(0.0, length, -0.5 * length)] {
+            let torus = Torus::new(DVec3::ZERO, axis, 0.28125, 1.6 + f64::from(k)).unwrap();
+            let ray = Ray::new(axis * (1000.0 / length), -axis);
+            for hit in all(&torus, &ray).into_iter().take(1) {
+                let surface = torus.surface(&ray, hit);
+                let side = Side::of_arrival(ray.direction, surface.normal);
+                let from = surface.departure(0, hit, side);
+                let (start, within) = from.ray(ray.origin - surface.point);
+                assert_eq!(torus.hit_leaving(&start, within, &from), None, "{torus:?} {surface:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_spindle_has_two_sheets() {
     // (rho - 3)^2 + z^2 = 25: along z = 0 the outer sheet is at rho = 8, the inner at rho = 2.
@@ -136,6 +155,54 @@ fn other_solvers() {
         assert_eq!(theirs.root(), ours.root());
         assert!((theirs.t() - ours.t()).abs() < 1e-9);
     }
+}
+
+/// What must not become slow unseen: the first ways, in `f64` and by Newton steps, answer nearly all rays at rings of plain
+/// shape, and of the rays that leave for good nearly all are known to.
+#[test]
+fn first_ways_answer() {
+    let mut count = [0_u32; 8];
+    for i in 0..4000 {
+        let x = f64::from(i);
+        let way = |k: f64| DVec3::new(libm::sin(k * x), libm::cos(1.7 * k * x), libm::sin(2.3 * k * x + 1.0));
+        let torus = Torus::new(way(0.1), way(0.7), 1.0, 0.15 + 0.1 * libm::fabs(libm::sin(x))).unwrap();
+        // At the tube, from a few sizes away.
+        let [a, b] = [torus.frame[0].high(), torus.frame[1].high()];
+        let target = torus.center + (a * libm::cos(x) + b * libm::sin(x)) + way(0.3) * (0.1 * torus.minor);
+        let ray = Ray::new(target + way(1.3) * 4.0, -way(1.3));
+        let scaled = torus.scaled(&ray).unwrap();
+        count[0] += 1;
+        for all in [false, true] {
+            let verdict = kernel::run(Filter { torus: &torus, ray: &scaled, within: Interval::LINE, all });
+            count[1 + usize::from(all)] += u32::from(matches!(verdict, Verdict::Certain(_)));
+        }
+        let Some(hit) = torus.hit(&ray, Interval::FORWARD) else { continue };
+        count[3] += 1;
+        count[4] += u32::from(kernel::run(Near { torus: &torus, ray: &scaled, hit }).is_some());
+        let surface = torus.surface(&ray, hit);
+        let from = surface.departure(0, hit, Side::Outside);
+        let out = if way(2.9).dot(surface.normal) < 0.0 { -way(2.9) } else { way(2.9) };
+        let (onward, within) = from.ray(out);
+        let onward = torus.scaled(&onward).unwrap();
+        let mut again = 0;
+        let each = |_| {
+            again += 1;
+            true
+        };
+        kernel::run(Leave { torus: &torus, ray: &onward, within, from: &from, first: false, each });
+        if again == 0 {
+            count[5] += 1;
+            count[6] += u32::from(leaving::never_returns(&torus, &onward, &from));
+        }
+    }
+    let share = |part: u32, whole: u32| f64::from(part) / f64::from(whole);
+    let shares = [
+        share(count[1], count[0]),
+        share(count[2], count[0]),
+        share(count[4], count[3]),
+        share(count[6], count[5]),
+    ];
+    assert!(shares.iter().all(|&share| share > 0.97), "{shares:?} {count:?}");
 }
 
 #[test]
