@@ -117,7 +117,7 @@ impl Frame {
             return none;
         }
         let far = ((ray.origin - self.center) * exp2i(-self.exponent)).abs().max_element();
-        if far < exp2i(60) { Window { absolute: (far + 1.0) * exp2i(-30) * exp2i(-power) } } else { none }
+        if far < exp2i(60) { Window { absolute: (far + 1.0) * exp2i(-24) * exp2i(-power) } } else { none }
     }
 
     /// The ray in kernel coordinates and the window of its ties; no ray when it misses the box of the scene.
