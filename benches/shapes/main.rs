@@ -13,6 +13,8 @@ use rt_core::shape::{Cone, Cylinder, Sphere};
 use rt_core::{Interval, Primitive, Ray};
 use std::hint::black_box;
 
+// Others measure with it too.
+#[allow(dead_code)]
 mod families;
 
 /// One row of times: checks, then measures both.
