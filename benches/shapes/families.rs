@@ -99,6 +99,62 @@ pub fn textbook_sphere(center: DVec3, radius: f64, ray: &Ray, within: Interval) 
     if within.contains(far) { Some(far) } else { None }
 }
 
+/// The quotient of two distances from the plane.
+pub fn textbook_plane(point: DVec3, normal: DVec3, ray: &Ray, within: Interval) -> Option<f64> {
+    let t = normal.dot(point - ray.origin) / normal.dot(ray.direction);
+    if within.contains(t) { Some(t) } else { None }
+}
+
+/// The place in the plane, and its distance from the centre.
+pub fn textbook_disk(center: DVec3, normal: DVec3, radius: f64, ray: &Ray, within: Interval) -> Option<f64> {
+    let w = ray.origin - center;
+    let t = -normal.dot(w) / normal.dot(ray.direction);
+    let p = w + ray.direction * t;
+    if within.contains(t) && p.dot(p) <= radius * radius { Some(t) } else { None }
+}
+
+/// Three pairs of planes (Kay and Kajiya 1986; Williams et al. 2005): the parameter, not the face.
+pub fn textbook_cuboid(min: DVec3, max: DVec3, ray: &Ray, within: Interval) -> Option<f64> {
+    let inverse = 1.0 / ray.direction;
+    let (a, b) = ((min - ray.origin) * inverse, (max - ray.origin) * inverse);
+    let least = |a: f64, b: f64| if a < b { a } else { b };
+    let most = |a: f64, b: f64| if a > b { a } else { b };
+    let near = most(least(a.x, b.x), most(least(a.y, b.y), least(a.z, b.z)));
+    let far = least(most(a.x, b.x), least(most(a.y, b.y), most(a.z, b.z)));
+    if near > far {
+        None
+    } else if within.contains(near) {
+        Some(near)
+    } else if within.contains(far) {
+        Some(far)
+    } else {
+        None
+    }
+}
+
+/// Moller and Trumbore 1997: Cramer's rule, leaving as soon as a weight is out of range.
+pub fn textbook_triangle([a, b, c]: [DVec3; 3], ray: &Ray, within: Interval) -> Option<f64> {
+    let (first, second) = (b - a, c - a);
+    let p = ray.direction.cross(second);
+    let determinant = first.dot(p);
+    if determinant == 0.0 {
+        return None;
+    }
+    let inverse = 1.0 / determinant;
+    let w = ray.origin - a;
+    let u = w.dot(p) * inverse;
+    if !(0.0..=1.0).contains(&u) {
+        return None;
+    }
+    let q = w.cross(first);
+    let v = ray.direction.dot(q) * inverse;
+    if v < 0.0 || u + v > 1.0 {
+        return None;
+    }
+    let t = second.dot(q) * inverse;
+    if within.contains(t) { Some(t) } else { None }
+}
+
 /// A frustum's numbers as a textbook keeps them.
 pub struct TextbookFrustum {
     base: DVec3,

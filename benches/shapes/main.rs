@@ -14,6 +14,8 @@ use rt_core::{Interval, Primitive, Ray};
 use std::hint::black_box;
 use std::time::Duration;
 
+// Others measure with it too.
+#[allow(dead_code)]
 mod families;
 
 /// One row of times: checks, then measures both.

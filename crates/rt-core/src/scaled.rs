@@ -164,13 +164,6 @@ pub(crate) fn is_plain(d: DVec3) -> bool {
 /// and a ray that grazes a sphere at a depth of 2^-33 radii from a few sizes away is still clear.
 pub(crate) const CLEAR: f64 = exp2i(14);
 
-/// The margin of a parameter in units of half the chord, for a discriminant more than [`CLEAR`] times the bound of its
-/// error: eight times the error for one that exceeds it just so, and small for nearly all, so that it seldom matters.
-#[inline(always)]
-pub(crate) fn margin(depth: f64, doubt: f64) -> f64 {
-    if depth > exp2i(20) * doubt { exp2i(-19) } else { exp2i(-13) }
-}
-
 /// A crossing found in `f64`: its parameter is wrong by less than `margin`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {

@@ -5,11 +5,12 @@
 //! about a hit, or are off by more than 1e-6 of the size, they are counted as wrong. parry finds the first hit in
 //! front of the origin with its normal; its cylinder and cone stand on the y axis, and so do ours here.
 
+use parry3d_f64::math::Pose;
 use parry3d_f64::query::{Ray as ParryRay, RayCast};
 use parry3d_f64::shape as parry;
 use rt_core;
 use rt_core::glam::DVec3;
-use rt_core::shape::{Cone, Cuboid, Cylinder, Sphere, Triangle};
+use rt_core::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
 use rt_core::{Interval, Primitive, Ray};
 use std::hint::black_box;
 use std::time::Instant;
@@ -17,7 +18,10 @@ use std::time::Instant;
 #[path = "../../../benches/shapes/families.rs"]
 #[allow(dead_code)]
 mod families;
-use families::{Random, TextbookFrustum, aimed, grazing, inside, missing, on_side, textbook_sphere};
+use families::{
+    Random, TextbookFrustum, aimed, grazing, inside, missing, on_side, textbook_cuboid, textbook_disk,
+    textbook_plane, textbook_sphere, textbook_triangle,
+};
 
 /// Enough that the least time is not disturbed.
 const PASSES: usize = 60;
@@ -45,47 +49,60 @@ fn wrong<'a>(rays: &'a [Ray], ours: &impl Primitive, theirs: impl Fn(&'a Ray) ->
     rays.iter().filter(|ray| is_wrong(ray)).count()
 }
 
-fn row<S: Primitive, F: Fn(&Ray, Interval) -> Option<f64>>(
+/// What answers a ray beside ours: a shape of parry's, where it has one, and the textbook's formula.
+struct Rivals<R, F> {
+    parry: Option<R>,
+    textbook: F,
+}
+
+fn row<S: Primitive, R: RayCast, F: Fn(&Ray, Interval) -> Option<f64>>(
     name: &str,
     shape: &S,
-    rival: &impl RayCast,
-    textbook: &Option<F>,
+    Rivals { parry, textbook }: &Rivals<R, F>,
     rays: &[Ray],
 ) {
-    let theirs = |ray: &Ray| {
+    let cast = |rival: &R, ray: &Ray| {
         let ray = ParryRay::new(ray.origin.to_array().into(), ray.direction.to_array().into());
         rival.cast_local_ray(&ray, f64::MAX, false)
     };
+    // Where a scene has the shape: at the origin, but parry does not know that.
+    let place = black_box(Pose::identity());
+    let cast_placed = |rival: &R, ray: &Ray| {
+        let ray = ParryRay::new(ray.origin.to_array().into(), ray.direction.to_array().into());
+        rival.cast_ray(&place, &ray, f64::MAX, false)
+    };
     let hits: Vec<_> = rays.iter().filter_map(|r| Some((*r, shape.hit(r, Interval::FORWARD)?))).collect();
-    let mut best = [f64::INFINITY; 4];
+    let mut best = [f64::INFINITY; 5];
     for _ in 0..PASSES {
         let mut keep = |k: usize, time: f64| best[k] = best[k].min(time);
         keep(0, time(rays, |r| shape.hit(r, Interval::FORWARD)));
-        keep(1, time(rays, theirs));
-        if let Some(formula) = textbook {
-            keep(2, time(rays, |r| formula(r, Interval::FORWARD)));
+        keep(1, time(rays, |r| textbook(r, Interval::FORWARD)));
+        if let Some(rival) = parry {
+            keep(2, time(rays, |r| cast(rival, r)));
+            keep(3, time(rays, |r| cast_placed(rival, r)));
         }
         if !hits.is_empty() {
-            keep(3, time(&hits, |(r, h)| shape.surface(r, *h)));
+            keep(4, time(&hits, |(r, h)| shape.surface(r, *h)));
         }
     }
-    let [hit, parry, formula, surface] = best;
-    print!(
-        "{name:18} hit {hit:6.1}  parry {parry:7.1} ({:4.2}, {:4} wrong)",
-        hit / parry,
-        wrong(rays, shape, theirs)
-    );
-    if let Some(f) = textbook {
-        let count = wrong(rays, shape, |r| f(r, Interval::FORWARD));
-        print!("  textbook {formula:6.1} ({:4.2}, {count:4} wrong)", hit / formula);
+    let [hit, formula, own, placed, surface] = best;
+    let count = wrong(rays, shape, |r| textbook(r, Interval::FORWARD));
+    print!("{name:18} hit {hit:6.1}  textbook {formula:6.1} ({:4.2}, {count:4} wrong)", hit / formula);
+    match parry {
+        Some(rival) => {
+            let count = wrong(rays, shape, |r| cast(rival, r));
+            print!("  parry {own:6.1} ({:4.2}, {count:4} wrong)", hit / own);
+            print!("  placed {placed:6.1} ({:4.2})", hit / placed);
+        }
+        None => print!("{:55}", ""),
     }
     if hits.is_empty() { println!() } else { println!("  surface {surface:6.1}") }
 }
 
 /// The five families about a centre; `touch` gives a point of the surface and the normal there.
-fn rows<S: Primitive, F: Fn(&Ray, Interval) -> Option<f64>>(
+fn rows<S: Primitive, R: RayCast, F: Fn(&Ray, Interval) -> Option<f64>>(
     name: &str,
-    (shape, rival, textbook): (&S, &impl RayCast, &Option<F>),
+    (shape, rivals): (&S, Rivals<R, F>),
     (radius, inner): (f64, f64),
     touch: impl Fn(&mut Random) -> (DVec3, DVec3),
 ) {
@@ -100,50 +117,90 @@ fn rows<S: Primitive, F: Fn(&Ray, Interval) -> Option<f64>>(
         ("miss", missing(center, radius)),
         ("inside", inside(center, radius, inner)),
     ] {
-        row(&format!("{name}/{family}"), shape, rival, textbook, &rays);
+        row(&format!("{name}/{family}"), shape, &rivals, &rays);
     }
 }
 
-type NoFormula = Option<fn(&Ray, Interval) -> Option<f64>>;
-
 fn main() {
-    let sphere = Sphere::new([0.0; 3], 1.3).unwrap();
+    // The numbers of a scene are not known when its renderer is compiled: those of the formulas are hidden too.
+    let center = black_box(DVec3::ZERO);
+
+    let radius = black_box(1.3);
+    let sphere = Sphere::new(center, radius).unwrap();
+    let rivals = Rivals {
+        parry: Some(parry::Ball::new(radius)),
+        textbook: |ray: &Ray, within| textbook_sphere(center, radius, ray, within),
+    };
     let on_sphere = |random: &mut Random| {
         let normal = random.direction();
         (normal * 1.3, normal)
     };
-    let formula = Some(|ray: &Ray, within| textbook_sphere(DVec3::ZERO, 1.3, ray, within));
-    rows("sphere", (&sphere, &parry::Ball::new(1.3), &formula), (1.3, 0.9), on_sphere);
+    rows("sphere", (&sphere, rivals), (1.3, 0.9), on_sphere);
+
+    let normal = black_box(DVec3::new(0.3, 0.8, -0.2).normalize());
+    let plane = Plane::new(center, normal).unwrap();
+    let rivals = Rivals {
+        parry: Some(parry::HalfSpace::new(normal.to_array().into())),
+        textbook: |ray: &Ray, within| textbook_plane(center, normal, ray, within),
+    };
+    // Within 1e-3 of parallel to the plane.
+    let nearly_on_plane = |random: &mut Random| {
+        let tilt = normal.cross(random.direction()) * 1e-3;
+        (random.direction().cross(normal), (normal + tilt).normalize())
+    };
+    rows("plane", (&plane, rivals), (1.0, 0.9), nearly_on_plane);
+
+    let disk = Disk::new(center, normal, radius).unwrap();
+    let rivals = Rivals {
+        parry: None::<parry::Ball>,
+        textbook: |ray: &Ray, within| textbook_disk(center, normal, radius, ray, within),
+    };
+    let on_rim = |random: &mut Random| {
+        let away = normal.cross(random.direction()).normalize();
+        (away * 1.3, away)
+    };
+    rows("disk", (&disk, rivals), (1.3, 0.9), on_rim);
+
+    let half = black_box(DVec3::new(0.8, 1.1, 0.6));
+    let cuboid = Cuboid::new(-half, half).unwrap();
+    let min = black_box(-half);
+    let rivals = Rivals {
+        parry: Some(parry::Cuboid::new(half.to_array().into())),
+        textbook: |ray: &Ray, within| textbook_cuboid(min, half, ray, within),
+    };
+    let on_face =
+        |random: &mut Random| (DVec3::new(0.8, 0.5 * random.signed(), 0.3 * random.signed()), DVec3::X);
+    rows("cuboid", (&cuboid, rivals), (1.49, 0.4), on_face);
+
+    let corners = black_box([[1.0, 0.1, 0.3], [-0.9, 0.2, 0.6], [0.1, -0.5, -1.2]]);
+    let [a, b, c] = corners;
+    let triangle = Triangle::new(a, b, c).unwrap();
+    let vertices = corners.map(DVec3::from);
+    let rivals = Rivals {
+        parry: Some(parry::Triangle::new(a.into(), b.into(), c.into())),
+        textbook: |ray: &Ray, within| textbook_triangle(vertices, ray, within),
+    };
+    let on_edge = |random: &mut Random| {
+        let s = 0.5 + 0.4 * random.signed();
+        let [a, b, c] = vertices;
+        (a + (b - a) * s, (b - a).cross(c - a).cross(b - a).normalize() * -1.0)
+    };
+    rows("triangle", (&triangle, rivals), (1.3, 0.4), on_edge);
 
     let (base, top) = (DVec3::new(0.0, -1.1, 0.0), DVec3::new(0.0, 1.1, 0.0));
     let cylinder = Cylinder::new(base, top, 0.8).unwrap();
     let plain = TextbookFrustum::new(base, 0.8, top, 0.8);
-    let formula = Some(|ray: &Ray, within| plain.hit::<false>(ray, within));
-    let rival = parry::Cylinder::new(1.1, 0.8);
-    rows("cylinder", (&cylinder, &rival, &formula), (1.36, 0.5), |r| on_side(&plain, r));
+    let rivals = Rivals {
+        parry: Some(parry::Cylinder::new(1.1, 0.8)),
+        textbook: |ray: &Ray, within| plain.hit::<false>(ray, within),
+    };
+    rows("cylinder", (&cylinder, rivals), (1.36, 0.5), |r| on_side(&plain, r));
 
     let cone = Cone::new(base, 1.1, top, 0.0).unwrap();
     let plain = TextbookFrustum::new(base, 1.1, top, 0.0);
-    let formula = Some(|ray: &Ray, within| plain.hit::<true>(ray, within));
-    let rival = parry::Cone::new(1.1, 1.1);
-    rows("cone", (&cone, &rival, &formula), (1.56, 0.2), |r| on_side(&plain, r));
-
-    let half = DVec3::new(0.8, 1.1, 0.6);
-    let cuboid = Cuboid::new(-half, half).unwrap();
-    let rival = parry::Cuboid::new(half.to_array().into());
-    let none: NoFormula = None;
-    let on_face =
-        |random: &mut Random| (DVec3::new(0.8, 0.5 * random.signed(), 0.3 * random.signed()), DVec3::X);
-    rows("cuboid", (&cuboid, &rival, &none), (1.49, 0.4), on_face);
-
-    let corners = [[1.0, 0.1, 0.3], [-0.9, 0.2, 0.6], [0.1, -0.5, -1.2]];
-    let [a, b, c] = corners;
-    let triangle = Triangle::new(a, b, c).unwrap();
-    let rival = parry::Triangle::new(a.into(), b.into(), c.into());
-    let on_edge = |random: &mut Random| {
-        let s = 0.5 + 0.4 * random.signed();
-        let [a, b, c] = corners.map(DVec3::from);
-        (a + (b - a) * s, (b - a).cross(c - a).cross(b - a).normalize() * -1.0)
+    let rivals = Rivals {
+        parry: Some(parry::Cone::new(1.1, 1.1)),
+        textbook: |ray: &Ray, within| plain.hit::<true>(ray, within),
     };
-    rows("triangle", (&triangle, &rival, &none), (1.3, 0.4), on_edge);
+    rows("cone", (&cone, rivals), (1.56, 0.2), |r| on_side(&plain, r));
 }

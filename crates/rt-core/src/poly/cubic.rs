@@ -45,7 +45,7 @@ fn general<P: Product>(c0: f64, c1: f64, c2: f64, c3: f64, within: Interval) -> 
 
 /// The `f64` way for coefficients of moderate size: closed form and certificate.
 #[inline(always)]
-fn quick<P: Product>(c: [f64; 4]) -> Option<Simple<3>> {
+pub(super) fn quick<P: Product>(c: [f64; 4]) -> Option<Simple<3>> {
     // Exponents from -64 to 63, or zero in the middle: less the least exponent, the upper four bits are zero.
     let beyond = |c: f64| c.to_bits().wrapping_sub(exp2i(-64).to_bits()) & (15 << 59);
     let ends = beyond(c[0]) | beyond(c[3]);

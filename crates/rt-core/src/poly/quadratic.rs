@@ -83,7 +83,7 @@ pub(super) fn balanced<P: Product>(c: &[f64; 3], exact: bool) -> Option<Roots<4>
 /// sum or nearly, when it is that small) and `|p|` above 2^-39 of the sum, the error is below 2^-60 of either numerator:
 /// 1/128 of a unit in the last place.
 #[inline(always)]
-fn quick<P: Product>([c0, c1, c2]: [f64; 3]) -> Option<Simple<2>> {
+pub(super) fn quick<P: Product>([c0, c1, c2]: [f64; 3]) -> Option<Simple<2>> {
     // c2 x^2 - 2 m x + c0
     let m = -0.5 * c1;
     let (square, square_low) = P::two_product(m, m);

@@ -96,6 +96,70 @@ impl Cuboid {
         if !ray.is_valid() { None } else { run(Span { cuboid: self, ray }) }
     }
 
+    /// The first crossing with a box along the world's axes, where a few comparisons can tell: what [`Slabs::first`] finds, to
+    /// the bit.
+    #[inline(always)]
+    fn plainly(&self, ray: &Ray, within: Interval) -> Result<Option<Hit>, ()> {
+        let d = ray.direction;
+        let inverse = 1.0 / d;
+        let (a, b) = ((self.min - ray.origin) * inverse, (self.max - ray.origin) * inverse);
+        let near = [lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z)];
+        let far = [greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z)];
+        let size = d.abs();
+        // Numbers, unless the ray does not move along an axis: then infinite, unless it runs within a plane.
+        let numbers = (a.x + a.y + a.z).is_finite() || {
+            let moves = |d: f64| (d > exp2i(-1000)) | (d == 0.0);
+            let products = (a.x * b.x + a.y * b.y) + a.z * b.z;
+            !products.is_nan() & moves(size.x) & moves(size.y) & moves(size.z)
+        };
+        if !(size.x + size.y + size.z < exp2i(1000) && numbers) {
+            return Err(());
+        }
+        let entry = greater(near[0], greater(near[1], near[2]));
+        let leave = lesser(far[0], lesser(far[1], far[2]));
+        // Parameters err by 4 u of themselves.
+        let doubt = |t: f64| (10.0 * U) * t.abs() + 2.0 * LEAST_CERTAIN;
+        let error = doubt(entry);
+        let (least, most) = (entry - error, entry + error);
+        if (least > within.min) & (lesser(leave, within.max) > most) {
+            let at = near.map(|t| (t >= least) as usize);
+            let at = at[0] | at[1] << 1 | at[2] << 2;
+            // One bit alone: 1, 2 and 4 stand for the axes 0, 1 and 2.
+            if at & (at - 1) != 0 {
+                return Err(());
+            }
+            let k = at >> 1;
+            let back = is_negative(&ray.direction, k);
+            return Ok(Some(Hit::inside(entry, 2 * k as u32 + back, 0)));
+        }
+        // The smaller one, which is a number where the other is infinite, tells how far apart they have to be.
+        if entry - leave > doubt(lesser(entry.abs(), leave.abs())) {
+            return Ok(None);
+        }
+        let error = doubt(leave);
+        let (least, most) = (leave - error, leave + error);
+        if (within.min > entry + doubt(entry)) & (least > within.min) & (within.max > most) {
+            let at = far.map(|t| (t <= most) as usize);
+            let at = at[0] | at[1] << 1 | at[2] << 2;
+            if at & (at - 1) != 0 {
+                return Err(());
+            }
+            let k = at >> 1;
+            let back = is_negative(&ray.direction, k);
+            return Ok(Some(Hit::inside(leave, 2 * k as u32 + 1 - back, 1)));
+        }
+        Err(())
+    }
+
+    /// The first crossing of a turned box, or one that is not easily told.
+    #[inline(never)]
+    fn hit_closely(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        match self.slabs(ray).first(within) {
+            Ok(hit) => hit,
+            Err(()) => self.hit_exactly(ray, within),
+        }
+    }
+
     /// The first crossing, when `f64` leaves a doubt. An interval that ends exactly at a parameter that `f64` gives
     /// was made from that hit, and does not contain it.
     #[cold]
@@ -254,6 +318,13 @@ impl Slabs {
             Err(())
         }
     }
+}
+
+/// Whether the component 0, 1 or 2 is negative.
+#[inline(always)]
+fn is_negative(d: &DVec3, k: usize) -> u32 {
+    let parts: &[f64; 3] = d.as_ref();
+    parts[if k < 2 { k } else { 2 }].is_sign_negative() as u32
 }
 
 /// One crossing of the line: the face, and the parameter correctly rounded.
@@ -459,11 +530,12 @@ impl Piece for Face<'_> {
 impl Primitive for Cuboid {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let slabs = self.slabs(ray);
-        match slabs.first(within) {
-            Ok(hit) => hit,
-            Err(()) => self.hit_exactly(ray, within),
+        if self.turn.is_none()
+            && let Ok(hit) = self.plainly(ray, within)
+        {
+            return hit;
         }
+        self.hit_closely(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {

@@ -1,6 +1,6 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, LEAST_CERTAIN, Relative, Rough, U, Verdict};
+use super::flat::{self, Doubt, LEAST_CERTAIN, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
@@ -96,9 +96,9 @@ impl Disk {
         let span = there.interval(within);
         let disk = Disk { center: DVec3::ZERO, radius: self.radius * there.unit, ..*self };
         match disk.plainly(&there.ray, span) {
-            Verdict::Hit(hit) => return there.hit(hit, within),
-            Verdict::Doubt(rough) if !rough.as_ref().is_some_and(|rough| rough.ends(span)) => {}
-            _ => return None,
+            Ok(hit) => return there.hit(hit?, within),
+            Err(Doubt { ended: false }) => {}
+            Err(Doubt { ended: true }) => return None,
         }
         let at = meeting::meet(self, ray)?;
         if run(InDisk { at: &at, radius: self.radius }) { within.admit(at.t, 0, 0) } else { None }
@@ -107,18 +107,21 @@ impl Disk {
     #[inline(always)]
     fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
         let rough = Rough::new(self.center, self.scaled_normal, ray);
-        // |rho - r| > error decides, that is |rho^2 - r^2| > error (rho + r), rho being at most the sum of the
-        // coordinates' sizes; the squares round by 4 u of themselves, and may underflow.
+        // |rho - r| > e decides, with e the error of the place and 3 u r for the squares, which round by 5 u of themselves and
+        // may underflow: so does |rho^2 - r^2| > e (2 r + e), both ways.
         let p = ray.direction * rough.t - rough.w;
-        let (rho2, r2) = (p.length_squared(), self.radius * self.radius);
-        let size = p.x.abs() + p.y.abs() + p.z.abs() + self.radius;
-        let doubt = rough.error * size + (5.0 * U) * (rho2 + r2) + LEAST_CERTAIN;
-        if rough.sound & (rho2 - r2 > doubt) {
-            Verdict::Miss
-        } else if rough.decides(within) & (r2 - rho2 > doubt) {
-            within.admit(rough.t, 0, 0).map_or(Verdict::Miss, Verdict::Hit)
+        let radius = self.radius;
+        let error = rough.error + (3.0 * U) * radius;
+        let doubt = error * (2.0 * radius + error) + LEAST_CERTAIN;
+        let depth = radius * radius - p.length_squared();
+        // No branch between hit and miss, since neighbouring rays may differ.
+        let (inside, beside) = rough.sides(within);
+        let hit = (depth > doubt) & inside;
+        let misses = (rough.sound & (depth < -doubt)) | ((depth > doubt) & beside);
+        if hit | misses {
+            Ok(if hit { Some(Hit::inside(rough.t, 0, 0)) } else { None })
         } else {
-            Verdict::Doubt((r2 - rho2 > doubt).then_some(rough))
+            Err(Doubt { ended: (depth > doubt) & rough.ends(within) })
         }
     }
 }
@@ -183,9 +186,8 @@ impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         match self.plainly(ray, within) {
-            Verdict::Hit(hit) => Some(hit),
-            Verdict::Miss => None,
-            Verdict::Doubt(_) => self.hit_carefully(ray, within),
+            Ok(hit) => hit,
+            Err(_) => self.hit_carefully(ray, within),
         }
     }
 

@@ -60,20 +60,37 @@ impl Rough {
         self.sound && (self.t == within.min || self.t == within.max)
     }
 
-    /// Whether it is certain on which sides of the ends of the interval the true parameter lies.
+    /// Whether the true parameter is certainly in the interval, and whether it certainly is not.
     #[inline(always)]
-    pub(super) fn decides(&self, within: Interval) -> bool {
-        self.sound & ((self.t - within.min).abs() > self.slack) & ((self.t - within.max).abs() > self.slack)
+    pub(super) fn sides(&self, within: Interval) -> (bool, bool) {
+        let Rough { t, slack, sound, .. } = *self;
+        let inside = sound & (t - within.min > slack) & (within.max - t > slack);
+        let beside = sound & ((within.min - t > slack) | (t - within.max > slack));
+        (inside, beside)
+    }
+
+    /// The hit of a ray that certainly meets the shape.
+    #[inline(always)]
+    pub(super) fn hit(self, within: Interval) -> Verdict {
+        let (inside, beside) = self.sides(within);
+        if inside {
+            Ok(Some(Hit::inside(self.t, 0, 0)))
+        } else if beside {
+            Ok(None)
+        } else {
+            Err(Doubt { ended: self.ends(within) })
+        }
     }
 }
 
-/// What plain `f64` says of a ray and a flat shape.
-pub(super) enum Verdict {
-    Miss,
-    Hit(Hit),
-    /// Not certain. Where the place is and only the end of the interval is in doubt, that may have been made from the
-    /// parameter that `f64` gives: then it does not contain it.
-    Doubt(Option<Rough>),
+/// The hit or none, where plain `f64` can tell.
+pub(super) type Verdict = Result<Option<Hit>, Doubt>;
+
+/// Plain `f64` cannot tell.
+pub(super) struct Doubt {
+    /// The place is certain, and the interval ends at the parameter that `f64` gives: it was made from that hit, and
+    /// does not contain it.
+    pub(super) ended: bool,
 }
 
 /// A ray seen from an anchor, in units of powers of two.

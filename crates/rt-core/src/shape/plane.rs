@@ -4,7 +4,7 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, Relative, Rough, Verdict};
+use super::flat::{self, Doubt, Relative, Rough, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::expansion::Expansion;
 use crate::kernel::Product;
@@ -82,21 +82,15 @@ impl Plane {
         let there = Relative::new(self.point, ray, 0.0);
         let span = there.interval(within);
         match (Plane { point: DVec3::ZERO, ..*self }).plainly(&there.ray, span) {
-            Verdict::Hit(hit) => there.hit(hit, within),
-            Verdict::Doubt(rough) if !rough.as_ref().is_some_and(|rough| rough.ends(span)) => {
-                within.admit(meeting::meet(self, ray)?.t, 0, 0)
-            }
-            _ => None,
+            Ok(hit) => there.hit(hit?, within),
+            Err(Doubt { ended: false }) => within.admit(meeting::meet(self, ray)?.t, 0, 0),
+            Err(Doubt { ended: true }) => None,
         }
     }
 
     #[inline(always)]
     fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
-        let rough = Rough::new(self.point, self.scaled_normal, ray);
-        if !rough.decides(within) {
-            return Verdict::Doubt(Some(rough));
-        }
-        within.admit(rough.t, 0, 0).map_or(Verdict::Miss, Verdict::Hit)
+        Rough::new(self.point, self.scaled_normal, ray).hit(within)
     }
 }
 
@@ -133,9 +127,8 @@ impl Primitive for Plane {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         match self.plainly(ray, within) {
-            Verdict::Hit(hit) => Some(hit),
-            Verdict::Miss => None,
-            Verdict::Doubt(_) => self.hit_carefully(ray, within),
+            Ok(hit) => hit,
+            Err(_) => self.hit_carefully(ray, within),
         }
     }
 

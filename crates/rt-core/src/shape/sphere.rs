@@ -138,21 +138,14 @@ impl Sphere {
         admit_exit(within, scaled.unscale(chord.shift + chord.at[1]).high, 0, 1)
     }
 
-    /// [`Primitive::hit`] for lines that nearly touch, or come from afar, and where the interval ends beside a crossing.
+    /// [`Primitive::hit`] for lines that nearly touch, and where a crossing is behind the interval or beside its end.
     #[inline(never)]
     fn hit_closely(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let line = Approach::new(self.radius, self.slack, ray.origin - self.center, ray.direction);
-        if let Some(chord) = line.chord() {
-            if let Some(hit) = chord.first(within) {
-                return Some(hit);
-            }
-            if chord.is_beside(within) {
-                return None;
-            }
-        } else if line.misses() {
-            return None;
+        match self.rough(ray) {
+            Rough::Miss => None,
+            Rough::Doubt => self.hit_in_doubt(ray, within),
+            clear => self.crossing(&clear, ray, within, 0).or_else(|| self.crossing(&clear, ray, within, 1)),
         }
-        self.hit_in_doubt(ray, within)
     }
 
     /// The same where `f64` leaves a doubt.
@@ -190,20 +183,13 @@ impl Approach {
     #[inline(always)]
     fn new(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Approach {
         let square = d.dot(d);
-        let line = Approach::of(square, w.dot(d), radius * radius, w, d);
+        let inverse = 1.0 / square;
+        let middle = -(w.dot(d) * inverse);
+        let l = w + d * middle;
         let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
         // Where `w.d` overflows, so does the square of `far`.
         let doubt = if moderate(square) { far * (slack + far * exp2i(-97)) } else { f64::NAN };
-        Approach { doubt, ..line }
-    }
-
-    /// From `|d|^2`, `w.d` and `r^2`, without a bound of errors.
-    #[inline(always)]
-    fn of(square: f64, along: f64, near: f64, w: DVec3, d: DVec3) -> Approach {
-        let inverse = 1.0 / square;
-        let middle = -(along * inverse);
-        let l = w + d * middle;
-        Approach { middle, depth: near - l.dot(l), inverse, doubt: f64::NAN }
+        Approach { middle, depth: radius * radius - l.dot(l), inverse, doubt }
     }
 
     #[inline(always)]
@@ -214,13 +200,10 @@ impl Approach {
     /// Where the line is inside, if that is certain.
     #[inline(always)]
     fn chord(&self) -> Option<Span> {
-        (self.depth > CLEAR * self.doubt).then(|| self.span())
-    }
-
-    #[inline(always)]
-    fn span(&self) -> Span {
-        let half = sqrt(self.depth * self.inverse);
-        Span { enter: self.middle - half, leave: self.middle + half, margin: half * exp2i(-13) }
+        (self.depth > CLEAR * self.doubt).then(|| {
+            let half = sqrt(self.depth * self.inverse);
+            Span { enter: self.middle - half, leave: self.middle + half, margin: half * exp2i(-13) }
+        })
     }
 }
 
@@ -247,23 +230,66 @@ impl Span {
         }
     }
 
-    /// Whether certainly no crossing is in the interval.
-    #[inline(always)]
-    fn is_beside(&self, within: Interval) -> bool {
-        let Span { enter, leave, margin } = *self;
-        let before = |t: f64| within.min - t > margin;
-        let after = |t: f64| t - within.max > margin;
-        before(leave) || after(enter) || (before(enter) && after(leave))
-    }
-
     fn candidates(&self) -> [Candidate; 2] {
         let Span { enter, leave, margin } = *self;
         [(enter, 0), (leave, 1)].map(|(t, root)| Candidate { t, margin, part: 0, root })
     }
 }
 
+/// What the discriminant tells of a line and a sphere about zero.
+enum Line {
+    Miss,
+    Chord(Span),
+    Doubt,
+}
+
+/// The sign of the discriminant `D = (w.d)^2 - |d|^2 (|w|^2 - r^2)`, where that is certain, and the crossings.
+///
+/// With `T = |d|^2 (|w|^2 + r^2)` and u = 2^-53, D errs by less than 14 u T (3 u of `|d|^2`, 3 u of `|w|^2`, 2 u of each
+/// coordinate of `w`, 8 u of the square, three operations): 2^-35 T is more than 2^14 times that.
+///
+/// Half the chord, h, errs by the error of D over `2 |d|^2 h`: 7 u (|w|^2 + r^2) / h. From up to six radii that is
+/// less than 33 u S over the cosine `h / r`, for S = |w| + 2 r. From farther away D is taken as `r^2 |d|^2 - |w x d|^2`
+/// (Lagrange's identity), which errs by less than 2 u T (see [`passes_outside`](crate::scaled::passes_outside);
+/// r < |w| / 6), and by less than `(5.8 r |w| + 10 r^2) u |d|^2`: h by 3 u S over the cosine. `w.d / |d|^2` errs by less
+/// than 9 u |w| / |d|, which is less than 2^-32 of half the chord.
+#[inline(always)]
+fn line(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Line {
+    let (square, along) = (d.dot(d), w.dot(d));
+    let (far, near) = (w.dot(w), radius * radius);
+    let mut depth = along * along - square * (far - near);
+    // NaN with `slack`: then both comparisons are false.
+    let safe = (exp2i(-35) + 0.0 * slack) * (square * (far + near));
+    // With the guard of the radius this keeps all products in the range of the exponents but those of a huge `w`, and
+    // those make T or the roots infinite or NaN.
+    if moderate(square) {
+        if depth > safe {
+            if far > 36.0 * near {
+                let moment = w.cross(d);
+                depth = near * square - moment.dot(moment);
+            }
+            let inverse = 1.0 / square;
+            let (middle, half) = (along * inverse, sqrt(depth) * inverse);
+            return Line::Chord(Span {
+                enter: -middle - half,
+                leave: half - middle,
+                margin: half * exp2i(-13),
+            });
+        }
+        if depth < -safe {
+            return Line::Miss;
+        }
+    }
+    Line::Doubt
+}
+
 /// A line and a sphere about zero in `f64`: certain, or in doubt.
 fn rough(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Rough {
+    match line(radius, slack, w, d) {
+        Line::Miss => return Rough::Miss,
+        Line::Chord(chord) => return Rough::Span(chord.candidates()),
+        Line::Doubt => {}
+    }
     let line = Approach::new(radius, slack, w, d);
     match line.chord() {
         Some(chord) => Rough::Span(chord.candidates()),
@@ -407,27 +433,14 @@ impl Task for FindRescaled<'_> {
 impl Primitive for Sphere {
     #[inline(always)]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        // The sign of the discriminant `D = (w.d)^2 - |d|^2 (|w|^2 - r^2)` tells most rays: with
-        // `T = |d|^2 (|w|^2 + r^2)` and u = 2^-53 it errs by less than 14 u T (3 u of `|d|^2`, 3 u of `|w|^2`, 2 u of each
-        // coordinate of `w`, 8 u of the square, three operations). The crossings are those of `Approach`: for `D` above
-        // 2^-31 T, half the chord squared times `|d|^2` is above 2^-31 (|w|^2 + r^2), more than 2^16 times its error there.
-        let (w, d) = (ray.origin - self.center, ray.direction);
-        let (square, along) = (d.dot(d), w.dot(d));
-        let (far, near) = (w.dot(w), self.radius * self.radius);
-        let discriminant = along * along - square * (far - near);
-        // NaN with `slack`: then both comparisons are false.
-        let safe = (exp2i(-31) + 0.0 * self.slack) * (square * (far + near));
-        // With the guard of the radius this keeps all products in the range of the exponents but those of a huge `w`, and
-        // those make T infinite or NaN.
-        if moderate(square) {
-            if discriminant < -safe {
-                return None;
+        match line(self.radius, self.slack, ray.origin - self.center, ray.direction) {
+            Line::Miss => return None,
+            Line::Chord(chord) => {
+                if let Some(hit) = chord.first(within) {
+                    return Some(hit);
+                }
             }
-            if discriminant > safe
-                && let Some(hit) = Approach::of(square, along, near, w, d).span().first(within)
-            {
-                return Some(hit);
-            }
+            Line::Doubt => {}
         }
         self.hit_closely(ray, within)
     }

@@ -6,13 +6,13 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, LEAST_CERTAIN, Relative, Rough, U, Verdict};
+use super::flat::{self, Doubt, LEAST_CERTAIN, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
-use crate::scaled::{checked_point, largest, times_power};
+use crate::scaled::{checked_point, largest, moderate, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
 use glam::{DVec2, DVec3};
@@ -140,9 +140,9 @@ impl Triangle {
             ..*self
         };
         match triangle.plainly(&there.ray, span) {
-            Verdict::Hit(hit) => return there.hit(hit, within),
-            Verdict::Doubt(rough) if !rough.as_ref().is_some_and(|rough| rough.ends(span)) => {}
-            _ => return None,
+            Ok(hit) => return there.hit(hit?, within),
+            Err(Doubt { ended: false }) => {}
+            Err(Doubt { ended: true }) => return None,
         }
         let signs = run(EdgeSigns { corners: self.corners(), ray });
         let (least, most) = (signs[0].min(signs[1]).min(signs[2]), signs[0].max(signs[1]).max(signs[2]));
@@ -170,20 +170,18 @@ impl Triangle {
         let doubt = (128.0 * U) * self.reach * base;
         let least = lesser(of_a, lesser(of_b, of_c));
         let most = greater(of_a, greater(of_b, of_c));
-        // Beyond these neither under- nor overflow is excluded. NaN makes every comparison false.
-        let certain =
-            (base > LEAST_BASE) & (base < MOST_BASE) & (doubt > LEAST_CERTAIN) & (doubt < MOST_BASE);
-        if certain & (least < -doubt) & (most > doubt) {
-            return Verdict::Miss;
+        // Beyond these neither under- nor overflow is excluded: with edges of up to 2^521, sums of products are at most 2^50
+        // times as large as the bound.
+        if !(moderate(base) & (doubt > LEAST_CERTAIN)) {
+            return Err(Doubt { ended: false });
         }
-        if certain & ((least > doubt) | (most < -doubt)) {
-            let rough = Rough::new(self.a, self.scaled_normal, ray);
-            if rough.decides(within) {
-                return within.admit(rough.t, 0, 0).map_or(Verdict::Miss, Verdict::Hit);
-            }
-            return Verdict::Doubt(Some(rough));
+        if (least < -doubt) & (most > doubt) {
+            Ok(None)
+        } else if (least > doubt) | (most < -doubt) {
+            Rough::new(self.a, self.scaled_normal, ray).hit(within)
+        } else {
+            Err(Doubt { ended: false })
         }
-        Verdict::Doubt(None)
     }
 }
 
@@ -308,9 +306,8 @@ impl Primitive for Triangle {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         match self.plainly(ray, within) {
-            Verdict::Hit(hit) => Some(hit),
-            Verdict::Miss => None,
-            Verdict::Doubt(_) => self.hit_carefully(ray, within),
+            Ok(hit) => hit,
+            Err(_) => self.hit_carefully(ray, within),
         }
     }
 
@@ -342,11 +339,6 @@ fn square_of_power(x: f64) -> f64 {
     let power = exp2i(crate::math::exponent(x).clamp(-1022, 0));
     power * power
 }
-
-/// Below this, products of coordinates may have lost digits to underflow.
-const LEAST_BASE: f64 = exp2i(-900);
-/// Above this, sums of products may overflow: they are at most 2^50 times as large as what is compared with it.
-const MOST_BASE: f64 = exp2i(900);
 
 #[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {

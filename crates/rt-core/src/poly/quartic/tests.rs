@@ -39,9 +39,9 @@ impl Task for First {
             let factors = split::split(c0 / c4, c1 / c4, c2 / c4, c3 / c4)?;
             discs::roots::<P>(&self.0, &factors).map(count)
         } else if c3 != 0.0 {
-            cubic::quick::<P>(&[c0, c1, c2, c3]).map(|r| count(r.inside(crate::Interval::LINE)))
+            cubic::quick::<P>([c0, c1, c2, c3]).map(|r| count(r.inside(&crate::Interval::LINE)))
         } else {
-            quadratic::quick::<P>(&[c0, c1, c2]).map(|r| count(r.inside(crate::Interval::LINE)))
+            quadratic::quick::<P>([c0, c1, c2]).map(|r| count(r.inside(&crate::Interval::LINE)))
         }
     }
 }

@@ -24,12 +24,12 @@ use crate::frame::frame;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
-    Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, largest, range_guard,
+    Candidate, ScaledRay, admit, admit_exit, checked_length, checked_point, largest, range_guard,
 };
 use crate::{Aabb, Departure, Error, Hit, Interval, Ray, Side};
 use glam::DVec3;
 use line::{FindLine, Line};
-use rough::Numbers;
+use rough::{Numbers, Rough, Span};
 
 /// The part number of the side.
 pub(super) const SIDE: u32 = 0;
@@ -158,44 +158,64 @@ impl Frustum {
         Some((scaled, line))
     }
 
-    /// Entrance and exit as `f64` finds them.
+    /// The crossings of the line as `f64` finds them; `None` in doubt.
     #[inline(always)]
-    fn rough<const SLOPED: bool>(&self, ray: &Ray) -> Rough {
-        self.numbers.span::<SLOPED>(ray.origin - self.base, ray.direction)
+    fn rough<const SLOPED: bool>(&self, ray: &Ray) -> Option<Span> {
+        match self.numbers.chord::<SLOPED>(ray.origin - self.base, ray.direction) {
+            Rough::Miss => Some(Span::Miss),
+            Rough::Doubt => None,
+            Rough::Chord(chord) => chord.span(),
+        }
     }
 
     /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
     /// finds what `f64` without limits would have found.
     #[cold]
-    fn rescaled<const SLOPED: bool>(&self, ray: &Ray) -> Rough {
-        let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else { return Rough::Miss };
+    #[inline(never)]
+    fn rescaled<const SLOPED: bool>(&self, ray: &Ray) -> Option<Span> {
+        if self.numbers.in_range(ray.direction) {
+            return None;
+        }
+        let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else { return Some(Span::Miss) };
         let numbers = self.numbers.scaled(exp2i(-self.unit), self.height.high);
-        match numbers.span::<SLOPED>(scaled.relative.high(), scaled.direction) {
-            Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
-            other => other,
+        match numbers.chord::<SLOPED>(scaled.relative.high(), scaled.direction) {
+            Rough::Miss => Some(Span::Miss),
+            Rough::Doubt => None,
+            Rough::Chord(chord) => match chord.span()? {
+                Span::Miss => Some(Span::Miss),
+                Span::Crossings(found) => Some(Span::Crossings(found.map(|c| c.unscale(scaled.power)))),
+            },
         }
     }
 
-    /// The crossing of this index, 0 or 1, in double-double.
+    /// The crossings that lie in the interval, in double-double.
     #[cold]
-    fn exact(&self, ray: &Ray, within: Interval, index: usize) -> Option<Hit> {
-        let (scaled, line) = self.line(ray)?;
-        let found = line.span(self.closed)[index & 1]?;
-        admit(within, scaled.unscale(line.shift + found.at), found.part, found.root)
+    #[inline(never)]
+    fn exact(&self, ray: &Ray, within: Interval) -> [Option<Hit>; 2] {
+        let Some((scaled, line)) = self.line(ray) else { return [None; 2] };
+        line.span(self.closed).map(|found| {
+            let found = found?;
+            admit(within, scaled.unscale(line.shift + found.at), found.part, found.root)
+        })
     }
 
     /// The crossing of this index, 0 or 1, if it lies in the interval.
     #[inline(always)]
-    fn crossing(&self, rough: &Rough, ray: &Ray, within: Interval, index: usize) -> Option<Hit> {
-        match rough {
-            Rough::Miss => None,
-            Rough::Doubt => self.exact(ray, within, index),
-            Rough::Span(span) => {
-                let candidate = span[index & 1];
-                if !self.closed && candidate.part != SIDE {
-                    return None;
-                }
-                candidate.decide(within, || self.exact(ray, within, index))
+    fn crossing(&self, candidate: &Candidate, ray: &Ray, within: Interval, index: usize) -> Option<Hit> {
+        if !self.closed && candidate.part != SIDE {
+            return None;
+        }
+        candidate.decide(within, || self.exact(ray, within)[index & 1])
+    }
+
+    /// The crossings in the interval.
+    #[inline(always)]
+    fn both(&self, span: Option<Span>, ray: &Ray, within: Interval) -> [Option<Hit>; 2] {
+        match span {
+            None => self.exact(ray, within),
+            Some(Span::Miss) => [None; 2],
+            Some(Span::Crossings(found)) => {
+                [0, 1].map(|index| self.crossing(&found[index], ray, within, index))
             }
         }
     }
@@ -203,31 +223,32 @@ impl Frustum {
     /// See [`Primitive::hit`](crate::Primitive::hit). `SLOPED`: the radii differ.
     #[inline(always)]
     pub fn hit<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match self.rough::<SLOPED>(ray) {
-            Rough::Miss => None,
-            Rough::Doubt => self.hit_in_doubt::<SLOPED>(ray, within),
-            clear => self.crossing(&clear, ray, within, 0).or_else(|| self.crossing(&clear, ray, within, 1)),
+        let chord = match self.numbers.chord::<SLOPED>(ray.origin - self.base, ray.direction) {
+            Rough::Miss => return None,
+            Rough::Doubt => return self.hit_in_doubt::<SLOPED>(ray, within),
+            Rough::Chord(chord) => chord,
+        };
+        match chord.span() {
+            None => self.hit_in_doubt::<SLOPED>(ray, within),
+            Some(Span::Miss) => None,
+            Some(Span::Crossings([first, last])) => {
+                self.crossing(&first, ray, within, 0).or_else(|| self.crossing(&last, ray, within, 1))
+            }
         }
     }
 
     /// The same where `f64` is in doubt.
     #[cold]
+    #[inline(never)]
     fn hit_in_doubt<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = self.rescaled::<SLOPED>(ray);
-        self.crossing(&rough, ray, within, 0).or_else(|| self.crossing(&rough, ray, within, 1))
+        let [first, last] = self.both(self.rescaled::<SLOPED>(ray), ray, within);
+        first.or(last)
     }
 
     /// See [`Primitive::crossings`](crate::Primitive::crossings).
     pub fn crossings<const SLOPED: bool>(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
-        let rough = match self.rough::<SLOPED>(ray) {
-            Rough::Doubt => self.rescaled::<SLOPED>(ray),
-            clear => clear,
-        };
-        for index in 0..2 {
-            if let Some(hit) = self.crossing(&rough, ray, within, index) {
-                each(hit);
-            }
-        }
+        let span = self.rough::<SLOPED>(ray).or_else(|| self.rescaled::<SLOPED>(ray));
+        self.both(span, ray, within).into_iter().flatten().for_each(each);
     }
 
     /// See [`Primitive::hit_leaving`](crate::Primitive::hit_leaving): the solid is convex, so there is nothing to
