@@ -12,7 +12,7 @@ pub struct Avx2Lanes(());
 /// Runs the computation with AVX2.
 ///
 /// # Safety
-/// The machine must have AVX2, FMA, BMI1, BMI2 and LZCNT.
+/// The machine must have AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) fn run<V: Vectorized>(task: V) -> V::Output {
     task.run(Avx2Lanes(()))

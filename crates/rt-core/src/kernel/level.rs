@@ -9,7 +9,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 pub enum Level {
     /// What every machine of the target has.
     Portable = 1,
-    /// x86-64 with AVX2, FMA, BMI1, BMI2 and LZCNT.
+    /// x86-64 with AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
     Avx2 = 2,
 }
 
@@ -52,6 +52,7 @@ fn best() -> Level {
         && std::arch::is_x86_feature_detected!("bmi1")
         && std::arch::is_x86_feature_detected!("bmi2")
         && std::arch::is_x86_feature_detected!("lzcnt")
+        && std::arch::is_x86_feature_detected!("popcnt")
     {
         return Level::Avx2;
     }
