@@ -418,3 +418,25 @@ fn a_small_sphere_and_a_long_direction() {
     sphere.crossings(&ray, Interval::LINE, &mut |hit| all.push(hit));
     assert_eq!((all.len(), sphere.hit(&ray, Interval::LINE)), (2, all.first().copied()));
 }
+
+/// The apex itself, met from 1e8 away: it is known to 2^-104 of that distance, and a direction away from the axis to less.
+#[test]
+fn a_normal_at_the_apex_from_afar() {
+    let (base, top) = (
+        DVec3::new(0.0, 0.0, -0.6672687530517578),
+        DVec3::new(-0.6484127044677734, -0.4108142852783203, -1.3779716491699219),
+    );
+    let ray = Ray::new(
+        [-35855369.106630094, 4982469.417781291, -94854850.51443622],
+        [35855368.45821739, -4982469.828595576, 94854849.13646457],
+    );
+    for cone in [
+        Cone::open(base, 0.21379756927490234, top, 0.0).unwrap(),
+        Cone::new(base, 0.21379756927490234, top, 0.0).unwrap(),
+    ] {
+        for hit in crossings(&cone, &ray, Interval::LINE) {
+            let surface = cone.surface(&ray, hit);
+            assert!((surface.normal.length_squared() - 1.0).abs() < 2e-15, "{surface:?}");
+        }
+    }
+}
