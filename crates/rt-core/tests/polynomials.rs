@@ -447,3 +447,28 @@ fn mirrors(c: [f64; 5]) {
     let back: Vec<_> = mirrored.iter().rev().map(|root| (-root.x, root.multiplicity)).collect();
     assert_eq!(found(&solve(c)), back);
 }
+
+/// Roots within 2^-25 of a unit from the middle of two numbers, and of very different size.
+#[test]
+fn what_is_mirrored_or_scaled_is_rounded_alike() {
+    let c = [
+        -0.25000000000000006,
+        -0.2500000000000002,
+        3.8518598887803834e-34,
+        -0.2500000000000002,
+        -0.2500000000000002,
+    ];
+    let mirrored = found(&solve([c[0], -c[1], c[2], -c[3], c[4]]));
+    let back: Vec<_> = mirrored.iter().rev().map(|&(x, m)| (-x, m)).collect();
+    assert_eq!(found(&solve(c)), back);
+    let c = [
+        -1.204646741732223e-58,
+        -1.904334371905195e-70,
+        2.088097429759528e-53,
+        -1.2988239387597226e56,
+        1.9856475293153764e-84,
+    ];
+    let scaled = found(&solve(std::array::from_fn(|k| c[k] * 2f64.powi(-5 - k as i32))));
+    let back: Vec<_> = scaled.iter().map(|&(x, m)| (0.5 * x, m)).collect();
+    assert_eq!(found(&solve(c)), back);
+}

@@ -236,6 +236,10 @@ fn refine<P: Product>(p: &Polynomial, from: Knot, to: Knot) -> Double {
         // The step itself is known to a few units of 2^-53 of its own size.
         let left = left.max(step.abs() * exp2i(-50));
         if left <= tolerance && noise <= tolerance && step.is_finite() {
+            // Once more: what is left then is the noise, far below what rounding to `f64` shows, and polynomials that are
+            // the same but for their scale round alike.
+            let at = local.at::<P>(root - origin);
+            let root = root + ldexp(-at.value.to_f64() / at.slope, at.exponent);
             return if root < low {
                 low
             } else if root > high {

@@ -97,6 +97,15 @@ impl<const N: usize> Roots<N> {
         }
     }
 
+    /// The roots of the polynomial in `-x`.
+    #[inline(always)]
+    pub(crate) fn mirrored(&self) -> Self {
+        let mut roots = if self.all() { Roots::everything() } else { Roots::default() };
+        // Zero has one sign.
+        self.iter().rev().for_each(|root| roots.push(0.0 - root.x, root.multiplicity));
+        roots
+    }
+
     /// Every root times a power of two.
     #[inline]
     pub(crate) fn scaled(mut self, power: f64) -> Self {

@@ -74,11 +74,16 @@ impl Solver for Quartic {
 /// All real roots of a polynomial of any degree up to four, finite coefficients.
 #[inline(always)]
 pub(in super::super) fn all_roots<P: Product>(c: &[f64; 5]) -> Roots<4> {
-    let whole = c[0] != 0.0 && c[4] != 0.0;
-    match if whole { quick::<P>(c) } else { lower::<P>(c) } {
-        Some(roots) => roots,
-        None => doubtful::<P>(c, whole),
+    if !(c[0] != 0.0 && c[4] != 0.0) {
+        return lower::<P>(c).unwrap_or_else(|| doubtful::<P>(c, false));
     }
+    // A polynomial and its mirror image go the same way: what is rounded, is rounded alike.
+    let odd = if c[3] != 0.0 { c[3] } else { c[1] };
+    let turned = odd != 0.0 && (odd > 0.0) != (c[4] > 0.0);
+    let side = if turned { -1.0 } else { 1.0 };
+    let c = [c[0], c[1] * side, c[2], c[3] * side, c[4]];
+    let roots = quick::<P>(&c).unwrap_or_else(|| doubtful::<P>(&c, true));
+    if turned { roots.mirrored() } else { roots }
 }
 
 /// Zero roots taken out, and lower degrees: what the cubic's own quick way leaves is a quartic divided by `x`.
