@@ -216,15 +216,18 @@ struct Span {
 }
 
 impl Span {
-    /// The first crossing in the interval, where that is certain.
+    /// The first crossing in the interval, or that there is none; `None` where that is not certain.
     #[inline(always)]
-    fn first(&self, within: Interval) -> Option<Hit> {
+    fn first(&self, within: Interval) -> Option<Option<Hit>> {
         let Span { enter, leave, margin } = *self;
         let inside = |t: f64| t - within.min > margin && within.max - t > margin;
+        let beyond = |t: f64| t - within.max > margin;
         if inside(enter) {
-            Some(Hit::inside(enter, 0, 0))
+            Some(Some(Hit::inside(enter, 0, 0)))
         } else if within.min - enter > margin && inside(leave) {
-            Some(Hit::inside(leave, 0, 1))
+            Some(Some(Hit::inside(leave, 0, 1)))
+        } else if within.min - leave > margin || beyond(enter) || (within.min - enter > margin && beyond(leave)) {
+            Some(None)
         } else {
             None
         }
@@ -437,7 +440,7 @@ impl Primitive for Sphere {
             Line::Miss => return None,
             Line::Chord(chord) => {
                 if let Some(hit) = chord.first(within) {
-                    return Some(hit);
+                    return hit;
                 }
             }
             Line::Doubt => {}
