@@ -57,3 +57,48 @@ pub(crate) fn tile(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Attenuation, Light, Material, Scene};
+    use rt_core::shape::{Plane, Sphere};
+
+    /// Rays cast together, and their shadow rays, give the bits and the counts of rays cast one by one.
+    #[test]
+    fn together_is_one_by_one() {
+        let mut scene = Scene::builder()
+            .camera(Camera::new([0.0, 4.0, 9.0], [0.0, 0.5, 0.0], [0.0, 1.0, 0.0], 50.0).unwrap())
+            .ambient([0.1; 3])
+            .light(Light::point([4.0, 9.0, 5.0], [0.9; 3], Attenuation::NONE).unwrap())
+            .light(Light::spot([-5.0, 8.0, 4.0], [0.0; 3], 9.0, 14.0, [0.5; 3], Attenuation::NONE).unwrap())
+            .object("floor", Plane::new([0.0; 3], [0.0, 1.0, 0.0]).unwrap(), Material::default());
+        // More than direction cubes hold.
+        for i in 0..100 {
+            let (x, z) = (f64::from(i % 10) - 4.5, f64::from(i / 10) - 4.5);
+            let material = Material {
+                specular: if i % 3 == 0 { 0.5 } else { 0.0 },
+                reflect: if i % 4 == 0 { 0.3 } else { 0.0 },
+                ..Material::default()
+            };
+            scene = scene.object(format!("{i}"), Sphere::new([x, 0.4, z], 0.4).unwrap(), material);
+        }
+        let scene = scene.build().unwrap();
+        let settings =
+            Settings { width: 41, height: 33, antialias: Antialias::Grid(2), ..Settings::default() };
+        let all = Region { x: 0, y: 0, width: 41, height: 33 };
+        let (mut together, mut single) = (Tracer::new(&scene, &settings), Tracer::new(&scene, &settings));
+        let mut pixels = Vec::new();
+        tile(&mut together, scene.camera(), &settings, all, &mut pixels);
+        for (i, pixel) in pixels.iter().enumerate() {
+            let mut sum = Color::BLACK;
+            for (dx, dy) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
+                let (x, y) = ((i % 41) as f64 + dx, (i / 41) as f64 + dy);
+                sum += single.eye(&scene.camera().ray(x, y, 41, 33));
+            }
+            assert_eq!((sum * 0.25).to_f32(), *pixel, "pixel {i}");
+        }
+        assert_eq!(together.stats, single.stats);
+        assert!(single.stats.shadow_hits > 100 && single.stats.reflected_rays > 100, "{:?}", single.stats);
+    }
+}

@@ -226,7 +226,10 @@ impl Span {
             Some(Some(Hit::inside(enter, 0, 0)))
         } else if within.min - enter > margin && inside(leave) {
             Some(Some(Hit::inside(leave, 0, 1)))
-        } else if within.min - leave > margin || beyond(enter) || (within.min - enter > margin && beyond(leave)) {
+        } else if within.min - leave > margin
+            || beyond(enter)
+            || (within.min - enter > margin && beyond(leave))
+        {
             Some(None)
         } else {
             None
