@@ -74,6 +74,14 @@ fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series
         .y_label_formatter(&|y| tick(*y))
         .draw()?;
     let mut labels = Labels::default();
+    // The legend goes into the upper corner that holds fewer points.
+    let (mut left, mut right) = (0, 0);
+    for (x, y, _) in all() {
+        let (x, y) = chart.backend_coord(&(*x, clamp(*y)));
+        left += u32::from(y < 180 && x < 400);
+        right += u32::from(y < 180 && x > 660);
+    }
+    let corner = if left < right { SeriesLabelPosition::UpperLeft } else { SeriesLabelPosition::UpperRight };
     for (index, one) in series.iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
         let marker = move |at: (i32, i32)| marker(index, at, colour);
@@ -98,7 +106,7 @@ fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(corner)
         .label_font(("sans-serif", 16))
         .background_style(WHITE.mix(0.9))
         .border_style(BLACK.mix(0.3))
@@ -111,7 +119,7 @@ fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series
 fn tick(x: f64) -> String {
     let exponent = x.log10().round() as i32;
     match x {
-        x if (1e-3..1e5).contains(&x) => format!("{}", (x * 1e6).round() / 1e6),
+        x if (1e-3..1e4).contains(&x) => format!("{}", (x * 1e6).round() / 1e6),
         x if (x / 10f64.powi(exponent) - 1.0).abs() < 1e-9 => {
             let superscript = |c: char| match c {
                 '-' => '\u{207b}',
