@@ -14,8 +14,9 @@ use crate::kernel::Product;
 use crate::math::{exp2i, sqrt};
 use core::hint::select_unpredictable;
 
-/// What is left of the error before the last rounding, relative: a thirty-second of a unit roundoff.
-pub(in super::super) const LEFT: f64 = exp2i(-58);
+/// What is left of the error before the last rounding, relative: less than 2^-7 units in the last place, so that both
+/// are within 0.51.
+pub(in super::super) const LEFT: f64 = exp2i(-60);
 
 /// The real roots of `c` from its approximate factors, correctly rounded or nearly so, and certainly all of them; or
 /// `None` in doubt.
@@ -73,7 +74,7 @@ pub(in super::super) fn compensated<P: Product, const M: usize, const N: usize>(
 /// Four real roots.
 #[inline(always)]
 fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
-    // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-58 after four.
+    // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-60 after four.
     for _ in 0..5 {
         let (p, size) = compensated::<P, 5, 4>(c, &x);
         let [d01, d02, d03, d12, d13, d23] =

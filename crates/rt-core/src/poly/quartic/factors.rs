@@ -9,6 +9,7 @@
 use super::super::Roots;
 use super::super::exact::multiple_root;
 use super::super::scaled::Polynomial;
+use super::discs::LEFT;
 use super::split::{Factor, split};
 use crate::double::{Double, two_sum};
 use crate::kernel::Product;
@@ -216,8 +217,7 @@ fn factor<P: Product>(
     if d.high < -ed {
         return true;
     }
-    // Less than a thirty-second of a unit roundoff may be wrong before the last rounding.
-    let sharp = |z: Double, e: f64| e <= exp2i(-58) * (z.high + origin).abs();
+    let sharp = |z: Double, e: f64| e <= LEFT * (z.high + origin).abs();
     if !(d.high > ed) {
         // A double root, if anything: only the exact test can say so.
         let x = if l == 1.0 { h } else { h.div::<P>(Double::from(l)) };
@@ -250,7 +250,7 @@ fn linear<P: Product>(m: Double, n: Double, em: f64, en: f64, found: &mut Roots<
     let x = -n.div::<P>(m);
     let error = (en + x.high.abs() * em) / m.high.abs() + NOISE * x.high.abs();
     found.push(x, 1);
-    error <= exp2i(-58) * x.high.abs()
+    error <= LEFT * x.high.abs()
 }
 
 /// The real roots of `n + m x + l x^2`, all coefficients within 2^+-200 of 1 or `m` zero; `None` in doubt.

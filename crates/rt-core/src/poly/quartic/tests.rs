@@ -1,8 +1,11 @@
 //! What must not become slow unseen: the first ways, in `f64`, answer nearly all polynomials whose roots are apart.
 
 use super::super::{cubic, quadratic};
-use super::{discs, split};
+use super::split::Factor;
+use super::{discs, factors, split};
 use crate::kernel::{Product, Task, run};
+use crate::math::exp2i;
+use crate::testing::Random;
 use proptest::prelude::*;
 
 /// Real roots and complex pairs.
@@ -73,4 +76,144 @@ proptest! {
             prop_assert_eq!(run(First(c)), Some(roots.len()), "{:?}", c);
         }
     }
+}
+
+type Found = Option<crate::poly::Roots<4>>;
+
+/// What the discs certify.
+struct Discs<'a>(&'a [f64; 5], &'a [Factor; 2]);
+
+impl Task for Discs<'_> {
+    type Output = Found;
+    fn run<P: Product>(self) -> Found {
+        discs::roots::<P>(self.0, self.1)
+    }
+}
+
+/// What both factors in double-double tell.
+struct Factors<'a>(&'a [f64; 5]);
+
+impl Task for Factors<'_> {
+    type Output = Found;
+    fn run<P: Product>(self) -> Found {
+        factors::roots::<P>(self.0)
+    }
+}
+
+/// Whether these are the roots of the polynomial, simple ones within 0.51 units in the last place: by the careful
+/// solver.
+fn are_the_roots(c: &[f64; 5], found: &crate::poly::Roots<4>) -> bool {
+    let truth = super::double(c.map(crate::double::Double::from));
+    truth.len() == found.len()
+        && truth.iter().zip(found.iter()).all(|(truth, root)| {
+            let unit = root.x.abs().next_up() - root.x.abs();
+            (truth.x - root.x).high.abs() <= 0.51 * unit
+        })
+}
+
+/// Four roots or pairs, those that shall be near each other within `near`: and the factors, each off by `off` of its size.
+fn two_factors(random: &mut Random, near: f64, off: f64) -> ([f64; 5], [Factor; 2]) {
+    let size = if random.once_in(2) { 1.0 } else { random.magnitude(-1.5, 0.0) };
+    let of = |random: &mut Random, around: f64, size: f64| {
+        let re = around + random.uniform(-1.0, 1.0) * size;
+        let half = size * if random.once_in(3) { near } else { random.uniform(0.0, 1.0) };
+        let square = half * half * random.sign();
+        Factor { linear: -2.0 * re, constant: re * re - square }
+    };
+    let f = of(random, 0.0, 1.0);
+    let beside = of(random, -0.5 * f.linear, near);
+    let g = if random.once_in(2) { beside } else { of(random, 0.0, size) };
+    let lead = if random.once_in(2) { 1.0 } else { random.uniform(1.0, 2.0) };
+    let c = [
+        f.constant * g.constant,
+        f.linear * g.constant + g.linear * f.constant,
+        f.constant + g.constant + f.linear * g.linear,
+        f.linear + g.linear,
+        1.0,
+    ];
+    let mut moved = |f: Factor| Factor {
+        linear: f.linear + off * random.uniform(-1.0, 1.0),
+        constant: f.constant * (1.0 + off * random.uniform(-1.0, 1.0)),
+    };
+    (c.map(|c| c * lead), [moved(f), moved(g)])
+}
+
+/// Whether the factors, multiplied out, are the monic polynomial but for this share of the terms of each coefficient.
+pub(super) fn multiply_back(c: &[f64; 5], f: &[Factor], share: f64) -> bool {
+    let mut product = [1.0, 0.0, 0.0, 0.0, 0.0];
+    let mut size = product;
+    for f in f {
+        let times = |c: &[f64; 5], b: f64, a: f64| -> [f64; 5] {
+            core::array::from_fn(|k| {
+                let at = |i: usize| k.checked_sub(i).map_or(0.0, |k| c[k]);
+                b * at(0) + a * at(1) + at(2)
+            })
+        };
+        product = times(&product, f.constant, f.linear);
+        size = times(&size, f.constant.abs(), f.linear.abs());
+    }
+    (0..5).all(|k| (product[k] - c[k] / c[4]).abs() <= share * size[k])
+}
+
+/// The first guess is what its name says, whatever the roots: two factors, whose product differs by little.
+#[test]
+fn splits_multiply_back() {
+    let mut random = Random::new(5);
+    let mut count = 0;
+    for case in 0..6000 {
+        let (mut c, _) = two_factors(&mut random, 1.0, 0.0);
+        if case % 3 == 0 {
+            // Roots in pairs about zero, or the product of two alike.
+            (c[1], c[3]) = (0.0, 0.0);
+        }
+        if let Some(f) = split::split(c[0] / c[4], c[1] / c[4], c[2] / c[4], c[3] / c[4]) {
+            count += 1;
+            assert!(multiply_back(&c, &f, exp2i(-24)), "{c:?} {f:?}");
+        }
+    }
+    assert!(count > 5990, "{count}");
+}
+
+/// Whatever factors the discs are given, what they certify is true.
+#[test]
+fn discs_certify_only_the_truth() {
+    let mut random = Random::new(3);
+    let mut count = [0; 5];
+    for _ in 0..40_000 {
+        let (near, off) = (random.magnitude(-4.0, 0.0), random.magnitude(-16.0, 0.0));
+        let (c, approximate) = two_factors(&mut random, near, off);
+        if let Some(roots) = run(Discs(&c, &approximate)) {
+            assert!(are_the_roots(&c, &roots), "{c:?} {approximate:?}: {roots:?}");
+            count[roots.len()] += 1;
+        }
+    }
+    assert!([0, 2, 4].iter().all(|&n| count[n] > 3000), "{count:?}");
+}
+
+/// What must not become slow unseen, and must be true: nearly equal roots, wherever they are, are told by both factors
+/// in double-double.
+#[test]
+fn factors_tell_nearly_equal_roots() {
+    let mut random = Random::new(4);
+    let mut count = [0; 3];
+    for case in 0..3000 {
+        let near = random.magnitude(-9.0, -2.0);
+        let (mut c, [f, g]) = two_factors(&mut random, near, 0.0);
+        if case % 3 == 1 {
+            // All near one place, far from zero.
+            let s = random.sign() * random.uniform(2.0, 4.0);
+            let moved = |f: Factor| {
+                [f.constant * near * near - s * near * f.linear + s * s, near * f.linear - 2.0 * s]
+            };
+            let ([b, a], [d, e]) = (moved(f), moved(g));
+            c = [b * d, a * d + e * b, b + d + a * e, a + e, 1.0];
+        } else if case % 3 == 2 {
+            c = [0.0, f.constant * g.linear, f.constant + f.linear * g.linear, f.linear + g.linear, 1.0];
+        }
+        if let Some(roots) = run(Factors(&c)) {
+            count[case % 3] += 1;
+            assert!(are_the_roots(&c, &roots), "{c:?}: {roots:?}");
+        }
+    }
+    assert!(count.iter().all(|&n| n > 990), "{count:?}");
 }
