@@ -235,3 +235,28 @@ pub(crate) fn moderate(square: f64) -> bool {
 pub(crate) fn range_guard(length: f64) -> f64 {
     if length > exp2i(-200) && length < exp2i(200) { 0.0 } else { f64::NAN }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ordinary directions need no scaling, those with components that count as zero or of extreme size do.
+    #[test]
+    fn which_directions_are_plain() {
+        for (x, y, z, expected) in [
+            (1.0, -0.5, 1e-3, true),
+            (0.0, 1.0, -0.0, true),
+            (3.0, 3e-48, 0.0, true),
+            (1.0, exp2i(-160), 1.0, true),
+            (1.0, exp2i(-161), 1.0, false),
+            (-1e-49, 0.5, 0.0, false),
+            (1e50, 1e40, 1e30, true),
+            (1e61, 0.0, 0.0, false),
+            (1e-61, 0.0, 0.0, false),
+            (f64::NAN, 1.0, 1.0, false),
+            (1.0, f64::INFINITY, 1.0, false),
+        ] {
+            assert_eq!(is_plain(DVec3::new(x, y, z)), expected, "{x} {y} {z}");
+        }
+    }
+}

@@ -750,4 +750,54 @@ mod tests {
         assert!(matches!(Cuboid::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]), Err(Error::Unordered { .. })));
         assert!(matches!(Cuboid::new([f64::NAN; 3], [1.0; 3]), Err(Error::NotFinite { .. })));
     }
+
+    /// What must not become slow unseen, and must be the same: the few comparisons answer nearly all plain rays, as the
+    /// slabs do; also rays along axes and within planes, and intervals that end at the very crossings.
+    #[test]
+    fn plainly_as_by_slabs() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [[0_u32; 2]; 3];
+        for case in 0..12_000 {
+            let (min, max) = (random.in_cube() - 1.5, random.in_cube() + 1.5);
+            let cuboid = Cuboid::new(min, max).unwrap();
+            let inside = min + (random.in_cube() * 0.49 + 0.5) * (max - min);
+            let mut direction = random.direction();
+            let mut origin = inside + random.direction() * random.uniform(0.0, 6.0);
+            if !random.once_in(3) {
+                // Aimed.
+                direction = inside - origin;
+            }
+            let kind = case % 3;
+            if kind > 0 {
+                direction[case / 3 % 3] = 0.0 * random.sign();
+                if kind == 2 {
+                    direction = DVec3::AXES[case / 3 % 3] * random.sign() + 0.0 * random.sign();
+                }
+                origin = if random.once_in(8) { min } else { origin };
+            }
+            let ray = Ray::new(origin, direction);
+            let (entry, leave) = cuboid.span(&ray).ends();
+            let mut end = || match random.below(4) {
+                0 => entry,
+                1 => leave,
+                2 => 0.0,
+                _ => random.uniform(-9.0, 9.0),
+            };
+            let all = [Interval::LINE, Interval::FORWARD, Interval::new(end(), end())];
+            for (number, within) in all.into_iter().enumerate() {
+                let found = cuboid.plainly(&ray, within);
+                if let (Ok(found), Ok(other)) = (found, cuboid.span(&ray).first(within)) {
+                    assert_eq!(found, other, "{cuboid:?} {ray:?} {within:?}");
+                } else if let Ok(found) = found {
+                    assert_eq!(found, cuboid.hit_exactly(&ray, within), "{cuboid:?} {ray:?} {within:?}");
+                }
+                if number < 2 {
+                    count[kind][usize::from(found.is_ok())] += 1;
+                }
+            }
+        }
+        let most = [0.03, 0.14, 0.65];
+        let few = |([left, told], most): ([u32; 2], f64)| f64::from(left) < most * f64::from(left + told);
+        assert!(count.into_iter().zip(most).all(few), "{count:?}");
+    }
 }

@@ -266,4 +266,29 @@ mod tests {
         assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], f64::NAN), Err(Error::NotPositive { .. })));
         assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
     }
+
+    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
+    #[test]
+    fn plainly_as_exactly() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [0_u32; 3];
+        for _ in 0..4000 {
+            let disk = Disk::new(random.in_cube(), random.direction(), random.uniform(0.1, 1.0)).unwrap();
+            let ray = Ray::new(random.direction() * 4.0, random.direction());
+            let target = disk.center + random.in_cube() * disk.radius;
+            let ray = Ray::new(ray.origin, target - ray.origin);
+            let Ok(found) = disk.plainly(&ray, Interval::FORWARD) else {
+                count[0] += 1;
+                continue;
+            };
+            let at = meeting::meet(&disk, &ray).unwrap();
+            let inside = run(InDisk { at: &at, radius: disk.radius });
+            assert_eq!(found.is_some(), inside, "{disk:?} {ray:?}");
+            if let Some(hit) = found {
+                assert!((hit.t() - at.t).abs() <= exp2i(-40), "{disk:?} {ray:?}");
+            }
+            count[1 + usize::from(inside)] += 1;
+        }
+        assert!(count[0] < 10 && count[1] > 1000 && count[2] > 1000, "{count:?}");
+    }
 }

@@ -423,4 +423,31 @@ mod tests {
         assert_eq!(fine.normal(), DVec3::Z);
         assert!(matches!(fine.with_normals(DVec3::Z, DVec3::ZERO, DVec3::Z), Err(Error::ZeroLength { .. })));
     }
+
+    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
+    #[test]
+    fn plainly_as_exactly() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [0_u32; 3];
+        for _ in 0..4000 {
+            let corners = [(); 3].map(|()| random.in_cube());
+            let Ok(triangle) = Triangle::new(corners[0], corners[1], corners[2]) else { continue };
+            let origin = random.direction() * 4.0;
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let ray = Ray::new(origin, middle + random.in_cube() * 0.3 - origin);
+            let Ok(found) = triangle.plainly(&ray, Interval::FORWARD) else {
+                count[0] += 1;
+                continue;
+            };
+            let signs = run(EdgeSigns { corners: triangle.corners(), ray: &ray });
+            let inside = !(signs.contains(&-1) && signs.contains(&1));
+            assert_eq!(found.is_some(), inside, "{triangle:?} {ray:?}");
+            if let Some(hit) = found {
+                let t = meeting::meet(&triangle, &ray).unwrap().t;
+                assert!((hit.t() - t).abs() <= exp2i(-30), "{triangle:?} {ray:?}");
+            }
+            count[1 + usize::from(inside)] += 1;
+        }
+        assert!(count[0] < 40 && count[1] > 800 && count[2] > 800, "{count:?}");
+    }
 }

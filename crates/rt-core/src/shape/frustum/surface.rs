@@ -247,4 +247,47 @@ mod tests {
             "{count:?}"
         );
     }
+
+    /// What must not become slow unseen: `f64` tells nearly all plain crossings with the side, in every direction, also next
+    /// to the axis and along the side; and tells them as double-double does.
+    #[test]
+    fn chords_in_every_direction() {
+        use crate::scaled::admit;
+        use crate::testing::Random;
+        let mut random = Random::new(1);
+        let mut count = [[0_u32; 2]; 4];
+        for case in 0..8000 {
+            let kind = case % 4;
+            let radii = [0.5, if kind == 0 { 0.5 } else { random.uniform(0.0, 0.45) }];
+            let top = random.direction();
+            let frustum = Frustum::new(DVec3::ZERO, radii, top, ["a", "b"], true).unwrap();
+            let axis = frustum.axis.high();
+            let target = top * random.uniform(0.1, 0.9) + random.in_cube() * 0.1;
+            let direction = match kind {
+                // Next to the axis, or along the side.
+                2 => axis + random.in_cube() * 0.2,
+                3 => {
+                    let out = axis.cross(random.direction()).normalize();
+                    axis + out * (radii[1] - radii[0]) + random.in_cube() * 0.05
+                }
+                _ => random.direction(),
+            };
+            let ray = Ray::new(target - direction * 3.0, direction);
+            let rough = if kind == 0 { frustum.rough::<false>(&ray) } else { frustum.rough::<true>(&ray) };
+            count[kind][usize::from(rough.is_some())] += 1;
+            let found = frustum.both(rough, &ray, Interval::LINE);
+            let (scaled, line) = frustum.line(&ray).unwrap();
+            let exact = line.span(true).map(|found| {
+                admit(Interval::LINE, scaled.unscale(line.shift + found?.at), found?.part, found?.root)
+            });
+            for (found, exact) in found.into_iter().zip(exact) {
+                assert_eq!(found.is_some(), exact.is_some(), "{frustum:?} {ray:?}");
+                if let (Some(found), Some(exact)) = (found, exact) {
+                    assert!((found.t() - exact.t()).abs() < 1e-11, "{frustum:?} {ray:?}");
+                    assert_eq!(found.part(), exact.part());
+                }
+            }
+        }
+        assert!(count.iter().all(|&[left, _]| left < 20), "{count:?}");
+    }
 }

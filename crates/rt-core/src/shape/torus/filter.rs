@@ -421,3 +421,54 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     }
     y
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ray;
+    use crate::kernel::run;
+    use crate::testing::Random;
+
+    /// What the rough line says of a place, and the precise one.
+    struct Both<'a>(&'a Torus, &'a ScaledRay, f64);
+
+    impl Task for Both<'_> {
+        type Output = Option<(RoughLine, Line, [f64; 3])>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Both(torus, ray, x) = self;
+            let line = Line::of::<P>(torus, ray);
+            let at = |x: f64| line.value::<P>(Double::from(x));
+            // (f(x + h) - 2 f(x) + f(x - h)) / h^2 is f'' + 2 h^2.
+            let h = exp2i(-6);
+            let second =
+                ((at(x + h).0 + at(x - h).0) - at(x).0.scale_exact(2.0)).to_f64() / (h * h) - 2.0 * h * h;
+            Some((RoughLine::new::<P>(torus, ray)?, line, [at(x).0.to_f64(), at(x).1.to_f64(), second]))
+        }
+    }
+
+    /// Values are within their errors, which are no more than two hundred roundings; slopes and curvatures are those of the
+    /// same function.
+    #[test]
+    fn rough_and_precise_lines_agree() {
+        let mut random = Random::new(1);
+        let mut count = 0;
+        for _ in 0..4000 {
+            let torus =
+                Torus::new(random.in_cube(), random.direction(), 1.0, random.uniform(0.05, 1.5)).unwrap();
+            let target = torus.center + random.in_cube();
+            let along = random.direction();
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along));
+            let (ray, s) = (ray.unwrap(), torus.reach);
+            let x = random.uniform(-1.0, 1.0) * s;
+            let Some((rough, line, [value, slope, second])) = run(Both(&torus, &ray, x)) else { continue };
+            count += 1;
+            let at = rough.value(&torus, x);
+            assert!((at.value - value).abs() <= at.error, "{torus:?} {ray:?} {x}");
+            assert!(at.error < 1000.0 * U * s * s * s * s, "{torus:?} {ray:?} {x}: {}", at.error);
+            assert!((at.slope - slope).abs() < 1e-13 * s * s * s);
+            assert!((rough.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
+            assert!((line.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
+        }
+        assert!(count > 1000, "{count}");
+    }
+}

@@ -307,3 +307,36 @@ fn refine<P: Product>(cubic: &Cubic, low: &Node, high: &Node) -> Double {
     }
     y
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::run;
+    use crate::testing::Random;
+
+    struct Value<'a>(&'a Cubic, f64);
+
+    impl Task for Value<'_> {
+        type Output = (f64, f64);
+        fn run<P: Product>(self) -> (f64, f64) {
+            let (value, slope) = self.0.value::<P>(Double::from(self.1));
+            (value.to_f64(), slope.to_f64())
+        }
+    }
+
+    #[test]
+    fn rough_values_are_those_of_the_cubic() {
+        let mut random = Random::new(1);
+        for _ in 0..1000 {
+            let c = [(); 3].map(|()| random.uniform(-4.0, 4.0));
+            let [second, first, constant] = c.map(Double::from);
+            let cubic = Cubic { second, first, constant };
+            let [second, first, constant] = c;
+            let y = random.uniform(-4.0, 4.0);
+            let ((a, b), (value, slope)) = (cubic.rough(y), run(Value(&cubic, y)));
+            assert!((a - value).abs() < 1e-13 && (b - slope).abs() < 1e-13, "{y}");
+            assert!((value - (((y + second) * y + first) * y + constant)).abs() < 1e-13);
+            assert!((slope - ((3.0 * y + 2.0 * second) * y + first)).abs() < 1e-13);
+        }
+    }
+}
