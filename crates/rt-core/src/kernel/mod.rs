@@ -12,6 +12,8 @@ mod memory;
 mod packet;
 mod stack;
 mod task;
+#[cfg(test)]
+mod tests;
 
 pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
