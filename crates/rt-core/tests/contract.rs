@@ -683,6 +683,8 @@ enum Fault {
     OutsideInterval,
     SplitInterval,
     HitAgain,
+    TooEarly,
+    TooLate,
     Odd,
     Unsorted,
     Missed,
@@ -712,6 +714,10 @@ impl Primitive for Broken {
             // A little of what is outside.
             let wider = within.until(within.max * 1.01);
             return match self.fault {
+                // A little of what is behind the end.
+                Fault::TooEarly if within.max > 0.0 => {
+                    self.sphere.hit(ray, within.until(within.max * (1.0 + 1e-9)))
+                }
                 Fault::OutsideInterval => self.sphere.hit(ray, wider),
                 _ => None,
             };
@@ -720,6 +726,12 @@ impl Primitive for Broken {
             Fault::Panic if !ray.origin.x.is_normal() => panic!("on purpose"),
             Fault::SplitInterval if within.min > 0.0 => None,
             Fault::HitAgain => within.admit(hit.t().next_down(), 0, 0),
+            // Once more from an interval that begins a little behind it, though not from one that begins at it.
+            Fault::TooLate if within.min > 0.0 => {
+                let before = self.sphere.hit(ray, Interval::FORWARD);
+                let again = |t: f64| t < within.min && t > within.min * (1.0 - 1e-12);
+                before.filter(|before| again(before.t())).or(Some(hit))
+            }
             Fault::Missed if self.struck(ray, hit) => None,
             Fault::Moody if within.max == f64::INFINITY => {
                 static CALLS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
@@ -790,6 +802,8 @@ fn broken_shapes_are_found() {
         (OutsideInterval, "an interval that"),
         (SplitInterval, "a split interval"),
         (HitAgain, "an interval that"),
+        (TooEarly, "an interval that ends before the first hit"),
+        (TooLate, "an interval that starts after a hit"),
         (Odd, "a closed shape"),
         (Unsorted, "crossings ascend"),
         (Missed, "the first hit is the first crossing"),
