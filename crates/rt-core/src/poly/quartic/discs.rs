@@ -237,3 +237,32 @@ impl Pair {
         r1.abs() * m + r0.abs() + exp2i(-46) * size
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    /// The residual is no less than the value at the root of the factor, nor than what roundings may hide of it.
+    #[test]
+    fn a_residual_bounds_the_value() {
+        let mut random = Random::new(1);
+        for _ in 0..2000 {
+            let c: [f64; 5] = core::array::from_fn(|_| random.uniform(-2.0, 2.0));
+            let (re, im) = (random.uniform(-3.0, 3.0), random.uniform(0.1, 3.0));
+            let f = Factor { linear: -2.0 * re, constant: re * re + im * im };
+            let pair = Pair::new(&f, -im * im);
+            let (mut value, mut size) = ([0.0, 0.0], 0.0);
+            for &c in c.iter().rev() {
+                value = [value[0] * re - value[1] * im + c, value[0] * im + value[1] * re];
+                size = size * sqrt(re * re + im * im) + c.abs();
+            }
+            let value = sqrt(value[0] * value[0] + value[1] * value[1]);
+            let residual = pair.residual(&c);
+            assert!(residual >= value * (1.0 - 1e-12) && residual >= 0.99 * exp2i(-46) * size);
+            // The imaginary part of the value is that of the linear term alone.
+            let most = value * (1.0 + 2.0 * pair.modulus / im);
+            assert!(residual <= 1.01 * (most + exp2i(-46) * size), "{residual} {value} {size}");
+        }
+    }
+}

@@ -102,7 +102,7 @@ impl Task for Factors<'_> {
 
 /// Whether these are the roots of the polynomial, simple ones within 0.51 units in the last place: by the careful
 /// solver.
-fn are_the_roots(c: &[f64; 5], found: &crate::poly::Roots<4>) -> bool {
+pub(super) fn are_the_roots(c: &[f64; 5], found: &crate::poly::Roots<4>) -> bool {
     let truth = super::double(c.map(crate::double::Double::from));
     truth.len() == found.len()
         && truth.iter().zip(found.iter()).all(|(truth, root)| {
@@ -112,7 +112,7 @@ fn are_the_roots(c: &[f64; 5], found: &crate::poly::Roots<4>) -> bool {
 }
 
 /// Four roots or pairs, those that shall be near each other within `near`: and the factors, each off by `off` of its size.
-fn two_factors(random: &mut Random, near: f64, off: f64) -> ([f64; 5], [Factor; 2]) {
+pub(super) fn two_factors(random: &mut Random, near: f64, off: f64) -> ([f64; 5], [Factor; 2]) {
     let size = if random.once_in(2) { 1.0 } else { random.magnitude(-1.5, 0.0) };
     let of = |random: &mut Random, around: f64, size: f64| {
         let re = around + random.uniform(-1.0, 1.0) * size;
@@ -216,4 +216,27 @@ fn factors_tell_nearly_equal_roots() {
         }
     }
     assert!(count.iter().all(|&n| n > 990), "{count:?}");
+}
+
+/// What must not become slow unseen: factors off by 1e-8 are as good as any, where roots are apart.
+#[test]
+fn discs_answer_from_afar() {
+    let mut random = Random::new(6);
+    for case in 0..3000 {
+        let mut moved = |x: f64| x * (1.0 + 1e-8 * random.uniform(-1.0, 1.0));
+        let [a, b, c, d] = [-1.5, -0.25, 0.5, 2.0].map(|x| x + 0.1 * libm::sin(f64::from(case) * (x + 3.0)));
+        let real = |a: f64, b: f64| [a * b, -(a + b)];
+        let pair = |re: f64, im: f64| [re * re + im * im, -2.0 * re];
+        let (f, g) = match case % 4 {
+            0 => (real(a, c), real(b, d)),
+            1 => (real(a, b), pair(c, d)),
+            2 => (pair(a, 0.5 * d), real(c, d)),
+            _ => (pair(a, d), pair(c, 1.0)),
+        };
+        let whole = [f[0] * g[0], f[1] * g[0] + g[1] * f[0], f[0] + g[0] + f[1] * g[1], f[1] + g[1], 1.0];
+        let factors =
+            [f, g].map(|[constant, linear]| Factor { constant: moved(constant), linear: moved(linear) });
+        let roots = run(Discs(&whole, &factors)).expect("roots that are apart");
+        assert!(are_the_roots(&whole, &roots), "{whole:?} {roots:?}");
+    }
 }
