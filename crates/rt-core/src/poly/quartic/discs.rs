@@ -247,10 +247,21 @@ mod tests {
     #[test]
     fn a_residual_bounds_the_value() {
         let mut random = Random::new(1);
-        for _ in 0..2000 {
-            let c: [f64; 5] = core::array::from_fn(|_| random.uniform(-2.0, 2.0));
+        for case in 0..2000 {
+            let mut c: [f64; 5] = core::array::from_fn(|_| random.uniform(-2.0, 2.0));
             let (re, im) = (random.uniform(-3.0, 3.0), random.uniform(0.1, 3.0));
             let f = Factor { linear: -2.0 * re, constant: re * re + im * im };
+            if case % 2 == 0 {
+                // A root but for roundings.
+                let [c0, c1, c2, ..] = c;
+                c = [
+                    c0 * f.constant,
+                    c1 * f.constant + c0 * f.linear,
+                    c2 * f.constant + c1 * f.linear + c0,
+                    c2 * f.linear + c1,
+                    c2,
+                ];
+            }
             let pair = Pair::new(&f, -im * im);
             let (mut value, mut size) = ([0.0, 0.0], 0.0);
             for &c in c.iter().rev() {
@@ -262,7 +273,7 @@ mod tests {
             assert!(residual >= value * (1.0 - 1e-12) && residual >= 0.99 * exp2i(-46) * size);
             // The imaginary part of the value is that of the linear term alone.
             let most = value * (1.0 + 2.0 * pair.modulus / im);
-            assert!(residual <= 1.01 * (most + exp2i(-46) * size), "{residual} {value} {size}");
+            assert!(residual <= 1.01 * most + 1.5 * exp2i(-46) * size, "{residual} {value} {size}");
         }
     }
 }
