@@ -257,6 +257,39 @@ proptest! {
         }
     }
 
+    /// A box is no larger than its shape but for some roundings.
+    #[test]
+    fn boxes_are_tight(spec in spec()) {
+        let Some(bounds) = spec.build().unwrap().bounds() else { return Ok(()) };
+        let disc = |center: DVec3, axis: DVec3, radius: f64| {
+            let a = axis.normalize();
+            let reach = (DVec3::ONE - a * a).max(DVec3::ZERO).map(f64::sqrt) * radius;
+            [center - reach, center + reach]
+        };
+        let ends: Vec<DVec3> = match spec {
+            Sphere { center, radius } => vec![center - radius, center + radius],
+            Plane { .. } => return Ok(()),
+            Disk { center, normal, radius } => disc(center, normal, radius).to_vec(),
+            Cuboid { min, max } => vec![min, max],
+            Cylinder { base, top, radius, .. } => {
+                [disc(base, top - base, radius), disc(top, top - base, radius)].concat()
+            }
+            Cone { base, base_radius, top, top_radius, .. } => {
+                [disc(base, top - base, base_radius), disc(top, top - base, top_radius)].concat()
+            }
+            Torus { center, axis, major, minor } => {
+                let [min, max] = disc(center, axis, major);
+                vec![min - minor, max + minor]
+            }
+            Triangle { a, b, c } => vec![a, b, c],
+        };
+        let least = ends.iter().fold(DVec3::INFINITY, |least, end| least.min(*end));
+        let most = ends.iter().fold(DVec3::NEG_INFINITY, |most, end| most.max(*end));
+        let room = 64.0 * U * ((most - least).max_element() + most.abs().max(least.abs()).max_element());
+        prop_assert!((bounds.min - least).abs().max_element() <= room, "{bounds:?} {least}");
+        prop_assert!((bounds.max - most).abs().max_element() <= room, "{bounds:?} {most}");
+    }
+
     /// P2: the normal is the gradient of the signed distance, outward; of a flat face, its own.
     #[test]
     fn normals_are_gradients((spec, ray) in aimed(spec())) {

@@ -232,6 +232,7 @@ fn one<P: Product>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::quadratic;
     use super::*;
     use crate::double::Double;
     use crate::kernel::{Task, run};
@@ -319,5 +320,52 @@ mod tests {
             }
         }
         assert!(count.iter().all(|&[left, told]| left == 0 && told > 3000), "{count:?}");
+    }
+
+    struct Balanced([f64; 4]);
+
+    impl Task for Balanced {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            balanced::<P>(&self.0)
+        }
+    }
+
+    struct BalancedQuadratic([f64; 3]);
+
+    impl Task for BalancedQuadratic {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            super::super::quadratic::balanced::<P>(&self.0, false)
+        }
+    }
+
+    /// Of any size, roots have the very bits that the quick way gives those of ordinary size.
+    #[test]
+    fn balanced_as_quick() {
+        let mut random = Random::new(3);
+        let listed = |roots: &[crate::poly::Root], k: i32| {
+            roots.iter().map(|root| (root.x * exp2i(k), root.multiplicity)).collect::<alloc::vec::Vec<_>>()
+        };
+        for case in 0..4000 {
+            let r = random.uniform(0.5, 2.0) * random.sign();
+            let c = cubic(r, random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0), random.uniform(0.5, 2.0));
+            let (place, value) = (random.below(400) as i32 - 200, random.below(300) as i32 - 150);
+            let at = |k: usize| exp2i(value - place * k as i32);
+            let scaled = [c[0] * at(0), c[1] * at(1), c[2] * at(2), c[3] * at(3)];
+            if let Some(quick) = run(Quick(c)) {
+                let found = run(Balanced(scaled)).expect("as quickly as of ordinary size");
+                assert_eq!(listed(&found, -place), listed(&quick, 0), "{c:?} {place} {value}");
+            } else {
+                assert!(case > 0);
+            }
+            let c = [c[0], c[1], c[2]];
+            let quick = quadratic(c, Interval::LINE);
+            if let Some(found) = run(BalancedQuadratic([scaled[0], scaled[1], scaled[2]])) {
+                assert_eq!(listed(&found, -place), listed(&quick, 0), "{c:?} {place} {value}");
+            } else {
+                assert!((c[1] * c[1] - 4.0 * c[0] * c[2]).abs() < 1e-6 || c[0] * c[2] == 0.0, "{c:?}");
+            }
+        }
     }
 }

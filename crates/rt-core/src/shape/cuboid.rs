@@ -800,4 +800,42 @@ mod tests {
         let few = |([left, told], most): ([u32; 2], f64)| f64::from(left) < most * f64::from(left + told);
         assert!(count.into_iter().zip(most).all(few), "{count:?}");
     }
+
+    /// What must not become slow unseen, and must be true: the slabs of turned boxes tell nearly all plain crossings; and of
+    /// directions at the end of the range of `f64` neither way tells anything that exact arithmetic does not.
+    #[test]
+    fn slabs_of_turned_boxes_and_of_extreme_directions() {
+        let mut random = crate::testing::Random::new(2);
+        let key = |hit: Hit| (hit.part(), hit.root());
+        let t = |hit: Option<Hit>| hit.map_or(0.0, |hit| hit.t());
+        let mut count = [0_u32; 2];
+        for _ in 0..3000 {
+            let cuboid = Cuboid::new(random.in_cube() - 1.5, random.in_cube() + 1.5).unwrap();
+            let axis = random.direction();
+            let by = Similarity::IDENTITY.rotated(axis, random.uniform(-180.0, 180.0)).unwrap();
+            let turned = cuboid.transformed(&by).unwrap();
+            let origin = random.direction() * random.uniform(3.0, 9.0);
+            let ray = Ray::new(origin, random.in_cube() * 1.5 - origin);
+            let first = turned.slabs(&ray).first(Interval::FORWARD);
+            count[usize::from(first.is_ok())] += 1;
+            if let Ok(first) = first {
+                let exact = turned.hit_exactly(&ray, Interval::FORWARD);
+                assert_eq!(first.map(key), exact.map(key), "{turned:?} {ray:?}");
+                assert!((t(first) - t(exact)).abs() < 1e-12, "{turned:?} {ray:?}");
+            }
+
+            let mut direction = random.direction();
+            for k in 0..3 {
+                direction[k] *= [1.0, 1e-300, 1e300, 1.7e308][random.below(4) as usize];
+            }
+            let ray = Ray::new(origin, direction);
+            if let Ok(found) = cuboid.plainly(&ray, Interval::FORWARD) {
+                assert!(direction.abs().element_sum() < exp2i(1000), "{ray:?}");
+                let exact = cuboid.hit_exactly(&ray, Interval::FORWARD);
+                assert_eq!(found.map(key), exact.map(key), "{cuboid:?} {ray:?}");
+                assert!((t(found) - t(exact)).abs() <= 10.0 * U * t(exact), "{cuboid:?} {ray:?}");
+            }
+        }
+        assert!(count[0] < 30 && count[1] > 2900, "{count:?}");
+    }
 }

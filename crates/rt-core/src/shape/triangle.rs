@@ -450,4 +450,31 @@ mod tests {
         }
         assert!(count[0] < 40 && count[1] > 800 && count[2] > 800, "{count:?}");
     }
+
+    /// Texture coordinates are right to a unit in the last place, however thin the triangle and far its corners.
+    #[test]
+    fn weights_keep_their_digits() {
+        let mut random = crate::testing::Random::new(2);
+        let whole = |random: &mut crate::testing::Random| f64::from(random.below(2000)) - 1000.0;
+        let mut count = 0;
+        for _ in 0..2000 {
+            // Whole numbers: the weights are fractions whose numbers are exact.
+            let [a, b, c] = [(); 3].map(|()| DVec3::new(whole(&mut random), whole(&mut random), 7.0));
+            let (e, f) = (b - a, c - a);
+            let area = e.x * f.y - e.y * f.x;
+            if area == 0.0 {
+                continue;
+            }
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let p = DVec3::new(whole(&mut random), whole(&mut random), 1000.0);
+            let ray = Ray::new(p, [0.0, 0.0, -3.0]);
+            let Some(hit) = triangle.hit(&ray, Interval::FORWARD) else { continue };
+            count += 1;
+            let l = p - a;
+            let expected = DVec2::new((l.x * f.y - l.y * f.x) / area, (e.x * l.y - e.y * l.x) / area);
+            let uv = triangle.surface(&ray, hit).uv();
+            assert!((uv - expected).abs().cmple(expected.abs() * f64::EPSILON).all(), "{uv} {expected}");
+        }
+        assert!(count > 100, "{count}");
+    }
 }

@@ -290,4 +290,53 @@ mod tests {
         }
         assert!(count.iter().all(|&[left, _]| left < 20), "{count:?}");
     }
+
+    /// What `f64` says of lines that nearly touch the side is true, for steep and flat cones, from near and from afar.
+    #[test]
+    fn chords_of_grazing_lines() {
+        use super::super::rough::Span;
+        use crate::scaled::admit;
+        use crate::testing::Random;
+        let mut random = Random::new(2);
+        let mut count = [0_u32; 3];
+        for case in 0..20_000 {
+            let height = random.magnitude(-3.0, 1.0);
+            let radii = [1.0, if case % 4 == 0 { 1.0 } else { random.uniform(0.0, 0.9) }];
+            let axis = random.direction();
+            let frustum = Frustum::new(random.in_cube(), radii, axis * height, ["a", "b"], true);
+            let Ok(frustum) = frustum else { continue };
+            // A point of the side, and a line in its tangent plane, off by a little.
+            let axis = (frustum.top - frustum.base).normalize();
+            let out = axis.cross(random.direction()).normalize();
+            let v = random.uniform(0.1, 0.9);
+            let length = (frustum.top - frustum.base).length();
+            let radius = radii[0] + (radii[1] - radii[0]) * v;
+            let normal = (out * length + axis * (radii[0] - radii[1])).normalize();
+            let tangent = normal.cross(random.direction()).normalize();
+            let place = frustum.base + axis * (v * length) + out * radius;
+            let place = place + normal * (random.sign() * random.magnitude(-17.0, -6.0) * length.min(1.0));
+            let ray = Ray::new(place - tangent * random.magnitude(-1.0, 4.0), tangent);
+            let rough =
+                if case % 4 == 0 { frustum.rough::<false>(&ray) } else { frustum.rough::<true>(&ray) };
+            let (scaled, line) = frustum.line(&ray).unwrap();
+            let exact = line.span(true).map(|found| {
+                admit(Interval::LINE, scaled.unscale(line.shift + found?.at), found?.part, found?.root)
+            });
+            match rough {
+                None => count[0] += 1,
+                Some(Span::Miss) => {
+                    count[1] += 1;
+                    assert_eq!(exact, [None; 2], "{frustum:?} {ray:?}");
+                }
+                Some(Span::Crossings(found)) => {
+                    count[2] += 1;
+                    for (found, exact) in found.into_iter().zip(exact) {
+                        let off = exact.map_or(f64::INFINITY, |exact| (exact.t() - found.t).abs());
+                        assert!(off <= found.margin, "{frustum:?} {ray:?} {found:?} {exact:?}");
+                    }
+                }
+            }
+        }
+        assert!(count.iter().all(|&count| count > 2000), "{count:?}");
+    }
 }

@@ -471,4 +471,41 @@ mod tests {
         }
         assert!(count > 1000, "{count}");
     }
+
+    struct Sharp<'a>(&'a Torus, &'a ScaledRay, f64);
+
+    impl Task for Sharp<'_> {
+        type Output = Option<(Node, f64, f64)>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Sharp(torus, ray, off) = self;
+            let rough = RoughLine::new::<P>(torus, ray)?;
+            let line = Line::of::<P>(torus, ray);
+            let node = sharpened::<P>(torus, &line, outermost(rough.p, rough.q) + off)?;
+            let at = Double::sum(node.x, node.low);
+            let (value, slope) = line.value::<P>(at);
+            Some((node, value.to_f64(), slope.to_f64()))
+        }
+    }
+
+    /// A sharp node is where the slope vanishes, to twice the precision of where it was looked for.
+    #[test]
+    fn sharp_nodes_are_extrema() {
+        let mut random = Random::new(2);
+        let mut count = 0;
+        for _ in 0..2000 {
+            let torus =
+                Torus::new(random.in_cube(), random.direction(), 1.0, random.uniform(0.1, 0.9)).unwrap();
+            let target = torus.center + random.in_cube();
+            let along = random.direction();
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let off = random.uniform(-1.0, 1.0) * exp2i(-36);
+            let Some((node, value, slope)) = run(Sharp(&torus, &ray, off)) else { continue };
+            count += 1;
+            let s = torus.reach;
+            assert!(slope.abs() <= exp2i(-55) * s * s * s, "{torus:?} {ray:?} {slope:e}");
+            assert!((value - node.value).abs() <= exp2i(-90) * s * s * s * s, "{value:e} {node:?}");
+            assert!(node.inside == (node.value < 0.0) && node.sharp);
+        }
+        assert!(count > 1000, "{count}");
+    }
 }
