@@ -259,4 +259,14 @@ mod tests {
             assert_eq!(is_plain(DVec3::new(x, y, z)), expected, "{x} {y} {z}");
         }
     }
+
+    /// In another unit a crossing has its margin in that unit too.
+    #[test]
+    fn a_crossing_in_another_unit() {
+        let candidate = Candidate { t: 3.0, margin: 0.25, part: 2, root: 1 };
+        let Candidate { t, margin, part, root } = candidate.unscale(4);
+        assert_eq!((t, margin, part, root), (48.0, 4.0, 2, 1));
+        let Candidate { t, margin, .. } = candidate.unscale(-2);
+        assert_eq!((t, margin), (0.75, 0.0625));
+    }
 }

@@ -343,4 +343,16 @@ mod tests {
         }
         assert!(count.iter().all(|&count| count > 5000), "{count:?}");
     }
+
+    /// Rays that begin within 2^10 times the largest coordinate are answered, whatever the scale.
+    #[test]
+    fn how_far_a_cube_reaches() {
+        for scale in [1e-9, 1.0, 1e6] {
+            let sphere = Sphere::new(DVec3::splat(2.0 * scale), scale).unwrap();
+            let geometry = Geometry::builder().add(sphere).build();
+            let cube = geometry.cube_about(DVec3::new(scale, 0.0, 0.0)).unwrap();
+            let from = |x: f64| crate::Ray::new([x * scale, 0.0, 0.0], [1.0, 0.0, 0.0]);
+            assert!(cube.holds(&from(3.0 * 1023.0)) && !cube.holds(&from(3.0 * 1025.0)));
+        }
+    }
 }

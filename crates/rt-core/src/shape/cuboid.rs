@@ -838,4 +838,21 @@ mod tests {
         }
         assert!(count[0] < 30 && count[1] > 2900, "{count:?}");
     }
+
+    /// Every face has the whole unit square, seen from outside with `y` up (or `z` where there is no `y`).
+    #[test]
+    fn coordinates_of_the_faces() {
+        let (corner, size) = (DVec3::new(1.0, -2.0, 3.0), DVec3::new(2.0, 4.0, 8.0));
+        let cuboid = Cuboid::new(corner, corner + size).unwrap();
+        let share = DVec3::new(0.25, 0.125, 0.375);
+        let expected =
+            [(0.375, 0.125), (0.625, 0.125), (0.25, 0.375), (0.25, 0.625), (0.75, 0.125), (0.25, 0.125)];
+        for (face, (u, v)) in expected.into_iter().enumerate() {
+            let out = DVec3::AXES[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
+            let ray = Ray::new(corner + share * size + out * 20.0, -out);
+            let hit = cuboid.hit(&ray, Interval::FORWARD).unwrap();
+            let surface = cuboid.surface(&ray, hit);
+            assert_eq!((hit.part(), surface.uv(), surface.normal), (face as u32, DVec2::new(u, v), out));
+        }
+    }
 }

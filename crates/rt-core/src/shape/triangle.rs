@@ -429,14 +429,20 @@ mod tests {
     fn plainly_as_exactly() {
         let mut random = crate::testing::Random::new(1);
         let mut count = [0_u32; 3];
-        for _ in 0..4000 {
-            let corners = [(); 3].map(|()| random.in_cube());
+        for case in 0..8000 {
+            let size = if case < 4000 { 1.0 } else { random.magnitude(-4.0, 4.0) };
+            let corners = [(); 3].map(|()| random.in_cube() * size);
             let Ok(triangle) = Triangle::new(corners[0], corners[1], corners[2]) else { continue };
             let origin = random.direction() * 4.0;
-            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-            let ray = Ray::new(origin, middle + random.in_cube() * 0.3 - origin);
+            let mut target = (corners[0] + corners[1] + corners[2]) / 3.0 + random.in_cube() * 0.3;
+            if case >= 4000 {
+                // Past an edge by nearly nothing.
+                target = corners[0] + (corners[1] - corners[0]) * random.uniform(-0.1, 1.1);
+                target += random.in_cube() * (size * random.magnitude(-18.0, -8.0));
+            }
+            let ray = Ray::new(origin, target - origin);
             let Ok(found) = triangle.plainly(&ray, Interval::FORWARD) else {
-                count[0] += 1;
+                count[0] += u32::from(case < 4000);
                 continue;
             };
             let signs = run(EdgeSigns { corners: triangle.corners(), ray: &ray });
@@ -444,7 +450,7 @@ mod tests {
             assert_eq!(found.is_some(), inside, "{triangle:?} {ray:?}");
             if let Some(hit) = found {
                 let t = meeting::meet(&triangle, &ray).unwrap().t;
-                assert!((hit.t() - t).abs() <= exp2i(-30), "{triangle:?} {ray:?}");
+                assert!((hit.t() - t).abs() <= exp2i(-30) * size.max(1.0), "{triangle:?} {ray:?}");
             }
             count[1 + usize::from(inside)] += 1;
         }

@@ -127,7 +127,7 @@ mod tests {
             (rays.size(), rays.center, rays.half),
             (3.0, DVec3::new(0.0, 3.0, 3.0), DVec3::new(1.0, 3.0, 1.0))
         );
-        let (mut axial, mut long) = (0, 0);
+        let (mut axial, mut long, mut beside) = (0, 0, 0.0_f64);
         for _ in 0..1000 {
             let target = rays.center + rays.random().in_cube();
             let ray = rays.at(target);
@@ -144,6 +144,7 @@ mod tests {
             let far = (ray.origin - target).length();
             let slope = ray.direction.normalize().dot(normal).abs();
             assert!(ahead && off <= 0.11 * (far + 3.0) && slope < 0.11, "{ray:?}");
+            beside = beside.max(off);
             let lift = (ray.origin - target).dot(normal).abs();
             assert!(lift <= 0.11 * (far + 3.0));
 
@@ -151,6 +152,8 @@ mod tests {
             assert!((ray.origin - target).abs().cmple(target.abs() * 1e-15).all());
         }
         assert!(axial > 200 && long > 50, "{axial} {long}");
+        // By a tenth of the size at most, and nearly so sometimes.
+        assert!((0.2..0.31).contains(&beside), "{beside}");
         for _ in 0..200 {
             let ray = rays.at_feature();
             let steps = [-1.0, 0.0, 1.0];

@@ -3,6 +3,7 @@
 use super::*;
 use crate::kernel::PortableLanes;
 use crate::testing::Random;
+use alloc::vec::Vec;
 use glam::DVec3;
 
 /// Rays side by side about a direction, the largest component of each in `[1, 2)`, `spread` apart.
@@ -83,4 +84,41 @@ fn what_makes_no_beam() {
     let mut nowhere = near.clone();
     nowhere.error = f64::INFINITY;
     assert!(!bundled(&nowhere, 0.5));
+}
+
+/// Rays that go side by side are answered together, and as one by one.
+#[test]
+fn rays_side_by_side_are_answered_together() {
+    use super::super::query::Nearest;
+    use crate::shape::Sphere;
+    use crate::{Interval, Ray};
+    let mut random = Random::new(3);
+    let mut builder = Geometry::builder();
+    for _ in 0..500 {
+        builder.push(Sphere::new(random.in_cube(), random.uniform(0.02, 0.1)).unwrap());
+    }
+    let geometry = builder.build();
+    for case in 0..200 {
+        // Up to a few shapes' sizes apart: 0.06 is that of a shape here, in the units of the world.
+        let spread = random.magnitude(-4.0, -1.3);
+        let origin = random.direction() * 3.0;
+        let count = if case % 2 == 0 { PACKET } else { 4 + case % 29 };
+        let rays: Vec<Ray> = (0..count)
+            .map(|_| Ray::new(origin + random.in_cube() * spread, random.in_cube() * spread - origin))
+            .collect();
+        let within = [Interval::FORWARD; PACKET];
+        let mut side = Side::EMPTY;
+        assert!(geometry.frame.enter_together(PortableLanes, &rays, &within, &mut side));
+        let queries = core::array::from_fn(|i| {
+            Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
+        });
+        let active = ((1_u64 << count) - 1) as u32;
+        let mut packet = Packet { rays: &rays, side, queries, active };
+        assert_eq!(packet.search(PortableLanes, &geometry), active, "{spread}");
+        for (ray, query) in rays.iter().zip(&packet.queries) {
+            if query.contested().is_none() {
+                assert_eq!(query.best(), geometry.nearest(ray, Interval::FORWARD));
+            }
+        }
+    }
 }

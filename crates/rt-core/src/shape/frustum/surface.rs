@@ -339,4 +339,38 @@ mod tests {
         }
         assert!(count.iter().all(|&count| count > 2000), "{count:?}");
     }
+
+    /// A hit that rounding invented, of a line that passes beside the side: the record is of the place on the surface next
+    /// to the line.
+    #[test]
+    fn records_beside_the_line_are_on_the_surface() {
+        let mut random = crate::testing::Random::new(3);
+        let mut count = 0;
+        for case in 0..2000 {
+            let radii = [0.5, if case % 2 == 0 { 0.5 } else { random.uniform(0.2, 0.45) }];
+            let frustum = Frustum::new(DVec3::ZERO, radii, random.direction(), ["a", "b"], true).unwrap();
+            let axis = frustum.axis.high();
+            let out = axis.cross(random.direction()).normalize();
+            let normal = (out + axis * (radii[0] - radii[1])).normalize();
+            let v = random.uniform(0.2, 0.8);
+            let off = random.magnitude(-14.0, -4.0);
+            let place = axis * v + out * (radii[0] + (radii[1] - radii[0]) * v);
+            // Across the axis: then the line passes outside everywhere.
+            let tangent = axis.cross(normal).normalize();
+            let ray = Ray::new(place + normal * off - tangent * 2.0, tangent);
+            let scaled = ScaledRay::new(&ray, frustum.base, frustum.unit).unwrap();
+            let hit = crate::Hit::inside(2.0, super::super::SIDE, 0);
+            let found = kernel::run(FindSurface { frustum: &frustum, ray: &scaled, hit });
+            let local = found.local.high() * exp2i(frustum.unit);
+            let z = local.dot(axis);
+            let rho = (local - axis * z).length();
+            assert!(
+                (rho - (radii[0] + (radii[1] - radii[0]) * z)).abs() < 1e-14,
+                "{frustum:?} {ray:?} {local}"
+            );
+            assert!((local - place).length() < 2.0 * off + 1e-7, "{frustum:?} {ray:?} {local} {place}");
+            count += 1;
+        }
+        assert!(count == 2000);
+    }
 }

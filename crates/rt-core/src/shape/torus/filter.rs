@@ -467,6 +467,7 @@ mod tests {
             assert!(at.error < 1000.0 * U * s * s * s * s, "{torus:?} {ray:?} {x}: {}", at.error);
             assert!((at.slope - slope).abs() < 1e-13 * s * s * s);
             assert!((rough.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
+            assert!((line.slope_at(x) - slope).abs() < 1e-13 * s * s * s, "{torus:?} {ray:?} {x}");
             assert!((line.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
         }
         assert!(count > 1000, "{count}");
@@ -507,5 +508,43 @@ mod tests {
             assert!(node.inside == (node.value < 0.0) && node.sharp);
         }
         assert!(count > 1000, "{count}");
+    }
+
+    /// Lines through the hole or past the rim, within the slab of the tube, are told at once; what is told so is true.
+    #[test]
+    fn lines_that_pass_the_tube() {
+        struct Passes<'a>(&'a Torus, &'a ScaledRay);
+        impl Task for Passes<'_> {
+            type Output = Option<(bool, usize)>;
+            fn run<P: Product>(self) -> Self::Output {
+                let rough = RoughLine::new::<P>(self.0, self.1)?;
+                let line = Line::of::<P>(self.0, self.1);
+                Some((rough.passes_the_tube(self.0), exact::crossings::<P>(self.0, &line).as_slice().len()))
+            }
+        }
+        let mut random = Random::new(3);
+        let mut count = [0; 3];
+        for case in 0..4000 {
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, 0.25).unwrap();
+            let [x, y, z] = torus.frame.map(|axis| axis.high());
+            // At a distance from the axis: within the hole, next to its edge, in the tube, or any.
+            let rho = match case % 4 {
+                0 => random.uniform(0.0, 0.5),
+                1 => 0.75 + random.sign() * random.magnitude(-17.0, -2.0),
+                2 => 1.25 + random.sign() * random.magnitude(-17.0, -2.0),
+                _ => random.uniform(0.0, 1.25),
+            };
+            let turn = random.uniform(0.0, core::f64::consts::TAU);
+            let place = torus.center + (x * libm::cos(turn) + y * libm::sin(turn)) * rho;
+            let along = z + if case % 4 == 0 { random.in_cube() * 0.3 } else { DVec3::ZERO };
+            let ray = torus.scaled(&Ray::new(place - along * 3.0, along)).unwrap();
+            let Some((passes, crossings)) = run(Passes(&torus, &ray)) else { continue };
+            assert!(!passes || crossings == 0, "{torus:?} {ray:?}");
+            match case % 4 {
+                0 => count[usize::from(passes)] += 1,
+                _ => count[2] += u32::from(passes),
+            }
+        }
+        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 500, "{count:?}");
     }
 }
