@@ -269,4 +269,47 @@ mod tests {
         let Candidate { t, margin, .. } = candidate.unscale(-2);
         assert_eq!((t, margin), (0.75, 0.0625));
     }
+
+    #[test]
+    fn what_constructors_accept() {
+        for (value, accepted) in [
+            (LARGEST, true),
+            (LARGEST.next_up(), false),
+            (SMALLEST, true),
+            (SMALLEST.next_down(), false),
+            (0.0, false),
+            (-1.0, false),
+            (f64::NAN, false),
+            (f64::INFINITY, false),
+        ] {
+            assert_eq!(checked_length("length", value).is_ok(), accepted, "{value}");
+        }
+        for (value, accepted) in [(LARGEST, true), (-LARGEST, true), (LARGEST.next_up(), false), (0.0, true)]
+        {
+            for axis in DVec3::AXES {
+                assert_eq!(checked_point("point", axis * value).is_ok(), accepted, "{value} {axis}");
+            }
+        }
+        assert!(checked_point("point", DVec3::new(0.0, f64::NAN, 0.0)).is_err());
+    }
+
+    /// The digits behind the rounded parameter decide at the very ends of an interval, unless the number is the end itself,
+    /// which an open interval does not contain.
+    #[test]
+    fn exact_parameters_at_the_ends() {
+        let within = Interval::new(1.0, 2.0);
+        for (high, low, inside) in [
+            (1.5, 0.0, true),
+            (1.0, -1e-17, false),
+            (1.0, 1e-17, false),
+            (2.0, -1e-17, false),
+            (2.0, 1e-17, false),
+            (1.0_f64.next_up(), -1e-17, true),
+            (2.0_f64.next_down(), 1e-17, true),
+            (0.5, 0.0, false),
+            (2.5, 0.0, false),
+        ] {
+            assert_eq!(admit(within, Double { high, low }, 0, 0).is_some(), inside, "{high} {low}");
+        }
+    }
 }

@@ -257,6 +257,19 @@ proptest! {
         }
     }
 
+    /// Where a ray meets a surface clearly, the error radius is some roundings, not more.
+    #[test]
+    fn error_radii_are_small((spec, ray) in aimed(spec())) {
+        let shape = spec.build().unwrap();
+        for hit in crossings(&shape, &ray).into_iter().filter(|_| clear(&shape, &ray)) {
+            let surface = shape.surface(&ray, hit);
+            let size = shape.bounds().map_or(0.0, |b| (b.max - b.min).max_element());
+            let reach = size + surface.point.abs().max_element() + surface.local.abs().max_element();
+            prop_assert!(surface.error <= 16.0 * U * reach, "{:e} of {reach}", surface.error);
+            prop_assert!(surface.error >= 0.5 * U * surface.point.abs().max_element());
+        }
+    }
+
     /// A box is no larger than its shape but for some roundings.
     #[test]
     fn boxes_are_tight(spec in spec()) {
