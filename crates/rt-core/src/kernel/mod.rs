@@ -6,6 +6,8 @@
 
 mod avx2;
 mod boxes;
+#[cfg(test)]
+pub(crate) mod counted;
 mod lanes;
 mod level;
 mod memory;

@@ -3,6 +3,7 @@
 use super::super::{cubic, quadratic};
 use super::split::Factor;
 use super::{discs, factors, split};
+use crate::kernel::counted::counted;
 use crate::kernel::{Product, Task, run};
 use crate::math::exp2i;
 use crate::testing::Random;
@@ -239,4 +240,74 @@ fn discs_answer_from_afar() {
         let roots = run(Discs(&whole, &factors)).expect("roots that are apart");
         assert!(are_the_roots(&whole, &roots), "{whole:?} {roots:?}");
     }
+}
+
+struct All([f64; 5]);
+
+impl Task for All {
+    type Output = usize;
+    fn run<P: Product>(self) -> usize {
+        super::all_roots::<P>(&self.0).len()
+    }
+}
+
+/// What must not become slow unseen: how many exact products a quartic takes by its kind, in the mean, as measured and no
+/// more than a fiftieth above.
+#[test]
+fn products_a_quartic() {
+    let mut random = Random::new(7);
+    let measured = [16.0, 43.9, 225.0, 33.4, 41.2, 17.2, 138.1, 488.5];
+    let mut found = [0.0; 8];
+    for case in 0..8000 {
+        let kind = case % 8;
+        let near = random.magnitude(-9.0, -2.0);
+        let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
+        let [a, b, c, d] = [root(0), root(1), root(2), root(3)];
+        let tiny = random.magnitude(-12.0, -6.0);
+        let list: [f64; 4] = match kind {
+            // Apart; two, three or four near each other; two and two; of very different size; a double and a triple root.
+            0 => [a, b, c, d],
+            1 => [a, a + near, c, d],
+            2 => [a, a + near, a - 2.0 * near, d],
+            3 => [a, a + near, a - 2.0 * near, a + 4.0 * near],
+            4 => [a, a + near, c, c - near],
+            5 => [a, b * tiny, c * tiny * tiny, d],
+            6 => [0.5, 0.5, c, d],
+            _ => [0.25, 0.25, 0.25, d],
+        };
+        let (_, products) = counted(All(expanded(&list, &[], 1.0)));
+        found[kind] += products as f64 / 1000.0;
+    }
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
+}
+
+/// The same for the careful solver alone.
+#[test]
+fn products_of_the_careful_solver() {
+    struct Careful([f64; 5]);
+    impl Task for Careful {
+        type Output = usize;
+        fn run<P: Product>(self) -> usize {
+            crate::poly::bracket::solve::<P, 4>(&self.0.map(crate::double::Double::from)).len()
+        }
+    }
+    let mut random = Random::new(8);
+    let measured = [403.4, 359.5, 352.1, 381.7];
+    let mut found = [0.0; 4];
+    for case in 0..2000 {
+        let kind = case % 4;
+        let near = random.magnitude(-9.0, -2.0);
+        let tiny = random.magnitude(-40.0, -3.0);
+        let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
+        let [a, b, c, d] = [root(0), root(1), root(2), root(3)];
+        let list = match kind {
+            0 => [a, b, c, d],
+            1 => [a, a + near, c, d],
+            2 => [a, a + near, a - 2.0 * near, d],
+            _ => [a, b * tiny, c * tiny * tiny, d],
+        };
+        let (_, products) = counted(Careful(expanded(&list, &[], 1.0)));
+        found[kind] += products as f64 / 500.0;
+    }
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
 }
