@@ -26,7 +26,7 @@ mod ray;
 mod scaled;
 pub mod shape;
 mod surface;
-#[cfg(feature = "testing")]
+#[cfg(any(test, feature = "testing"))]
 #[cfg_attr(docsrs, doc(cfg(feature = "testing")))]
 pub mod testing;
 mod transform;

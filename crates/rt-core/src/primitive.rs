@@ -70,3 +70,47 @@ impl<P: Primitive + ?Sized> Primitive for Arc<P> {
         (**self).crossings_leaving(ray, within, from, each)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Torus;
+    use crate::{Shape, Side};
+    use alloc::vec::Vec;
+
+    /// A shape behind a pointer is the shape.
+    #[test]
+    fn an_arc_is_what_it_points_to() {
+        let torus = Torus::new([0.5, 0.0, 0.0], [0.0, 1.0, 1.0], 1.0, 0.3).unwrap();
+        let (plain, shared) = (Shape::from(torus), Arc::new(torus));
+        assert_eq!(Primitive::bounds(&shared), plain.bounds());
+        let mut count = 0;
+        for i in 0..50 {
+            let ray = Ray::new([0.5, 0.0, 4.0], [0.03 * f64::from(i) - 0.75, 0.3, -4.0]);
+            let hit = shared.hit(&ray, Interval::FORWARD);
+            assert_eq!(hit, plain.hit(&ray, Interval::FORWARD));
+            let all = |shape: &dyn Primitive| {
+                let mut all = Vec::new();
+                shape.crossings(&ray, Interval::FORWARD, &mut |hit| all.push(hit));
+                all
+            };
+            assert_eq!(all(&shared), all(&plain));
+            let Some(hit) = hit else { continue };
+            count += all(&shared).len();
+            let surface = shared.surface(&ray, hit);
+            assert_eq!(surface.point, plain.surface(&ray, hit).point);
+            let from = surface.departure(0, hit, Side::Inside);
+            let (onward, within) = from.ray(ray.direction);
+            let next = shared.hit_leaving(&onward, within, &from);
+            assert!(next.is_some() && next == plain.hit_leaving(&onward, within, &from));
+            let rest = |shape: &dyn Primitive| {
+                let mut rest = Vec::new();
+                shape.crossings_leaving(&onward, within, &from, &mut |hit| rest.push(hit));
+                rest
+            };
+            assert_eq!(rest(&shared), rest(&plain));
+            count += rest(&shared).len();
+        }
+        assert!(count > 60, "{count}");
+    }
+}

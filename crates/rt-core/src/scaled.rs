@@ -235,3 +235,81 @@ pub(crate) fn moderate(square: f64) -> bool {
 pub(crate) fn range_guard(length: f64) -> f64 {
     if length > exp2i(-200) && length < exp2i(200) { 0.0 } else { f64::NAN }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ordinary directions need no scaling, those with components that count as zero or of extreme size do.
+    #[test]
+    fn which_directions_are_plain() {
+        for (x, y, z, expected) in [
+            (1.0, -0.5, 1e-3, true),
+            (0.0, 1.0, -0.0, true),
+            (3.0, 3e-48, 0.0, true),
+            (1.0, exp2i(-160), 1.0, true),
+            (1.0, exp2i(-161), 1.0, false),
+            (-1e-49, 0.5, 0.0, false),
+            (1e50, 1e40, 1e30, true),
+            (1e61, 0.0, 0.0, false),
+            (1e-61, 0.0, 0.0, false),
+            (f64::NAN, 1.0, 1.0, false),
+            (1.0, f64::INFINITY, 1.0, false),
+        ] {
+            assert_eq!(is_plain(DVec3::new(x, y, z)), expected, "{x} {y} {z}");
+        }
+    }
+
+    /// In another unit a crossing has its margin in that unit too.
+    #[test]
+    fn a_crossing_in_another_unit() {
+        let candidate = Candidate { t: 3.0, margin: 0.25, part: 2, root: 1 };
+        let Candidate { t, margin, part, root } = candidate.unscale(4);
+        assert_eq!((t, margin, part, root), (48.0, 4.0, 2, 1));
+        let Candidate { t, margin, .. } = candidate.unscale(-2);
+        assert_eq!((t, margin), (0.75, 0.0625));
+    }
+
+    #[test]
+    fn what_constructors_accept() {
+        for (value, accepted) in [
+            (LARGEST, true),
+            (LARGEST.next_up(), false),
+            (SMALLEST, true),
+            (SMALLEST.next_down(), false),
+            (0.0, false),
+            (-1.0, false),
+            (f64::NAN, false),
+            (f64::INFINITY, false),
+        ] {
+            assert_eq!(checked_length("length", value).is_ok(), accepted, "{value}");
+        }
+        for (value, accepted) in [(LARGEST, true), (-LARGEST, true), (LARGEST.next_up(), false), (0.0, true)]
+        {
+            for axis in DVec3::AXES {
+                assert_eq!(checked_point("point", axis * value).is_ok(), accepted, "{value} {axis}");
+            }
+        }
+        assert!(checked_point("point", DVec3::new(0.0, f64::NAN, 0.0)).is_err());
+    }
+
+    /// The digits behind the rounded parameter decide at the very ends of an interval, unless the number is the end itself,
+    /// which an open interval does not contain.
+    #[test]
+    fn exact_parameters_at_the_ends() {
+        let within = Interval::new(1.0, 2.0);
+        for (high, low, inside) in [
+            (1.5, 0.0, true),
+            (1.0, -1e-17, false),
+            (1.0, 1e-17, false),
+            (2.0, -1e-17, false),
+            (2.0, 1e-17, false),
+            (1.0_f64.next_up(), -1e-17, true),
+            (2.0_f64.next_down(), 1e-17, true),
+            (0.5, 0.0, false),
+            (2.5, 0.0, false),
+        ] {
+            assert_eq!(admit(within, Double { high, low }, 0, 0).is_some(), inside, "{high} {low}");
+        }
+    }
+}

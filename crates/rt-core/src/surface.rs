@@ -201,3 +201,29 @@ impl Departure {
         (Ray::new(self.point, direction), Interval::new(min, f64::INFINITY))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Primitive;
+    use crate::shape::Sphere;
+
+    /// On a globe the first coordinate runs around, the second from the south pole to the north pole.
+    #[test]
+    fn coordinates_of_a_globe() {
+        let sphere = Sphere::new([1.0, 2.0, 3.0], 2.0).unwrap();
+        for (x, y, z, v) in [
+            (0.0, -1.0, 0.0, 0.0),
+            (0.0, 1.0, 0.0, 1.0),
+            (1.0, 0.0, 0.0, 0.5),
+            (0.6, 0.8, 0.0, 0.795_167_235_3),
+            (0.0, -0.6, 0.8, 0.295_167_235_3),
+        ] {
+            let way = DVec3::new(x, y, z);
+            let ray = crate::Ray::new(sphere.center() + way * 5.0, -way);
+            let hit = sphere.hit(&ray, crate::Interval::FORWARD).unwrap();
+            let uv = sphere.surface(&ray, hit).uv();
+            assert!((uv.y - v).abs() < 1e-9 && (0.0..1.0).contains(&uv.x), "{way}: {uv}");
+        }
+    }
+}

@@ -139,4 +139,14 @@ mod tests {
         let s = s.translated([1.0, 0.0, 0.0]).unwrap();
         assert_eq!(s.point(DVec3::X), DVec3::new(1.0, 2.0, 0.0));
     }
+
+    #[test]
+    fn its_parts_are_those_it_was_made_of() {
+        let s = Similarity::IDENTITY.scaled(2.0).unwrap().rotated(DVec3::Z, 90.0).unwrap();
+        let s = s.translated([1.0, -3.0, 0.5]).unwrap();
+        assert_eq!((s.scale(), s.translation()), (2.0, DVec3::new(1.0, -3.0, 0.5)));
+        assert_eq!(s.rotation() * DVec3::X, DVec3::Y);
+        assert_eq!(s.direction(DVec3::X), DVec3::Y);
+        assert_eq!(Similarity::IDENTITY.translation(), DVec3::ZERO);
+    }
 }

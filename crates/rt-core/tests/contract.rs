@@ -257,6 +257,52 @@ proptest! {
         }
     }
 
+    /// Where a ray meets a surface clearly, the error radius is some roundings, not more.
+    #[test]
+    fn error_radii_are_small((spec, ray) in aimed(spec())) {
+        let shape = spec.build().unwrap();
+        for hit in crossings(&shape, &ray).into_iter().filter(|_| clear(&shape, &ray)) {
+            let surface = shape.surface(&ray, hit);
+            let size = shape.bounds().map_or(0.0, |b| (b.max - b.min).max_element());
+            let reach = size + surface.point.abs().max_element() + surface.local.abs().max_element();
+            prop_assert!(surface.error <= 16.0 * U * reach, "{:e} of {reach}", surface.error);
+            prop_assert!(surface.error >= 0.5 * U * surface.point.abs().max_element());
+        }
+    }
+
+    /// A box is no larger than its shape but for some roundings.
+    #[test]
+    fn boxes_are_tight(spec in spec()) {
+        let Some(bounds) = spec.build().unwrap().bounds() else { return Ok(()) };
+        let disc = |center: DVec3, axis: DVec3, radius: f64| {
+            let a = axis.normalize();
+            let reach = (DVec3::ONE - a * a).max(DVec3::ZERO).map(f64::sqrt) * radius;
+            [center - reach, center + reach]
+        };
+        let ends: Vec<DVec3> = match spec {
+            Sphere { center, radius } => vec![center - radius, center + radius],
+            Plane { .. } => return Ok(()),
+            Disk { center, normal, radius } => disc(center, normal, radius).to_vec(),
+            Cuboid { min, max } => vec![min, max],
+            Cylinder { base, top, radius, .. } => {
+                [disc(base, top - base, radius), disc(top, top - base, radius)].concat()
+            }
+            Cone { base, base_radius, top, top_radius, .. } => {
+                [disc(base, top - base, base_radius), disc(top, top - base, top_radius)].concat()
+            }
+            Torus { center, axis, major, minor } => {
+                let [min, max] = disc(center, axis, major);
+                vec![min - minor, max + minor]
+            }
+            Triangle { a, b, c } => vec![a, b, c],
+        };
+        let least = ends.iter().fold(DVec3::INFINITY, |least, end| least.min(*end));
+        let most = ends.iter().fold(DVec3::NEG_INFINITY, |most, end| most.max(*end));
+        let room = 64.0 * U * ((most - least).max_element() + most.abs().max(least.abs()).max_element());
+        prop_assert!((bounds.min - least).abs().max_element() <= room, "{bounds:?} {least}");
+        prop_assert!((bounds.max - most).abs().max_element() <= room, "{bounds:?} {most}");
+    }
+
     /// P2: the normal is the gradient of the signed distance, outward; of a flat face, its own.
     #[test]
     fn normals_are_gradients((spec, ray) in aimed(spec())) {
@@ -683,6 +729,8 @@ enum Fault {
     OutsideInterval,
     SplitInterval,
     HitAgain,
+    TooEarly,
+    TooLate,
     Odd,
     Unsorted,
     Missed,
@@ -712,6 +760,10 @@ impl Primitive for Broken {
             // A little of what is outside.
             let wider = within.until(within.max * 1.01);
             return match self.fault {
+                // A little of what is behind the end.
+                Fault::TooEarly if within.max > 0.0 => {
+                    self.sphere.hit(ray, within.until(within.max * (1.0 + 1e-9)))
+                }
                 Fault::OutsideInterval => self.sphere.hit(ray, wider),
                 _ => None,
             };
@@ -720,6 +772,12 @@ impl Primitive for Broken {
             Fault::Panic if !ray.origin.x.is_normal() => panic!("on purpose"),
             Fault::SplitInterval if within.min > 0.0 => None,
             Fault::HitAgain => within.admit(hit.t().next_down(), 0, 0),
+            // Once more from an interval that begins a little behind it, though not from one that begins at it.
+            Fault::TooLate if within.min > 0.0 => {
+                let before = self.sphere.hit(ray, Interval::FORWARD);
+                let again = |t: f64| t < within.min && t > within.min * (1.0 - 1e-12);
+                before.filter(|before| again(before.t())).or(Some(hit))
+            }
             Fault::Missed if self.struck(ray, hit) => None,
             Fault::Moody if within.max == f64::INFINITY => {
                 static CALLS: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
@@ -790,6 +848,8 @@ fn broken_shapes_are_found() {
         (OutsideInterval, "an interval that"),
         (SplitInterval, "a split interval"),
         (HitAgain, "an interval that"),
+        (TooEarly, "an interval that ends before the first hit"),
+        (TooLate, "an interval that starts after a hit"),
         (Odd, "a closed shape"),
         (Unsorted, "crossings ascend"),
         (Missed, "the first hit is the first crossing"),

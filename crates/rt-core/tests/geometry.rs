@@ -348,6 +348,53 @@ fn packets_of_rays_that_graze_spheres() {
     }
 }
 
+/// Packets of a camera's rays of which some are none, or come from far away: one by one and together they find the same.
+#[test]
+fn packets_with_rays_that_are_none() {
+    let mut builder = Geometry::builder();
+    for i in 0..200 {
+        let x = f64::from(i);
+        let center = DVec3::new((x * 0.7).sin(), (x * 1.3).cos(), (x * 2.9).sin());
+        builder.push(Sphere::new(center, 0.05 + 0.1 * (x * 0.37).sin().abs()).unwrap());
+    }
+    let geometry = builder.build();
+    for kind in 0..6 {
+        for every in [2, 3, 7, 31] {
+            let mut rays = Vec::new();
+            let mut within = vec![Interval::FORWARD; 320];
+            for i in 0..320 {
+                // The camera turns, so that one packet's rays are not the next one's.
+                let (x, y, turn) = (f64::from(i % 8) * 0.02, f64::from(i / 8 % 4) * 0.02, f64::from(i / 32));
+                let origin = DVec3::new(3.0 * turn.cos(), 0.3, 3.0 * turn.sin());
+                let right = DVec3::new(-turn.sin(), 0.0, turn.cos());
+                let mut ray = Ray::new(origin, -origin + right * x + DVec3::Y * y);
+                if i % every == every / 2 {
+                    match kind {
+                        0 => ray.direction = DVec3::ZERO,
+                        1 => ray.origin.x = f64::NAN,
+                        2 => within[i as usize] = Interval::new(2.0, 1.0),
+                        3 => ray.origin -= ray.direction * 1e6,
+                        4 => ray.direction *= 1e-305,
+                        _ => within[i as usize] = Interval::new(f64::NEG_INFINITY, f64::INFINITY),
+                    }
+                }
+                rays.push(ray);
+            }
+            let (mut found, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+            for level in [Level::Portable, Level::Avx2] {
+                set_level(level);
+                geometry.nearest_many(&rays, &within, &mut found);
+                geometry.occluded_many(&rays, &within, &mut occluded);
+                for (i, ray) in rays.iter().enumerate() {
+                    assert_eq!(found[i], geometry.nearest(ray, within[i]), "{kind} {every} {i}");
+                    assert_eq!(occluded[i], found[i].is_some(), "{kind} {every} {i}");
+                }
+                assert!(found.iter().flatten().count() > 40, "{kind} {every}");
+            }
+        }
+    }
+}
+
 /// Rays of any bits, legal or not, find the same and never panic.
 #[test]
 fn any_bits() {

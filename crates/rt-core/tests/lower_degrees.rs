@@ -417,3 +417,39 @@ fn quartics_of_any_size_have_the_careful_solvers_roots() {
         assert_eq!(listed(&roots, 1.0), listed(&portable, 1.0), "{c:?}");
     }
 }
+
+/// `(d x - n)^3 (e x - f)` and squares of `a x^2 + b x + c`, with whole numbers whose products are exact: decided exactly,
+/// whether the roots are rational, irrational or none.
+#[test]
+fn fractions_and_squares_are_decided_exactly() {
+    let mut random = Random::new(1);
+    let mut whole = |most: u32| random.sign() * f64::from(1 + random.below(most));
+    let mut count = [0; 3];
+    let found =
+        |c| quartic(c, Interval::LINE).iter().map(|root| (root.x, root.multiplicity)).collect::<Vec<_>>();
+    for case in 0..4000 {
+        let (d, n, e, f) = (whole(4000).abs(), whole(4000), whole(100).abs(), whole(100));
+        let cube = [-n * n * n, 3.0 * n * n * d, -3.0 * n * d * d, d * d * d];
+        let c = std::array::from_fn(|k| {
+            let at = |k: usize| cube.get(k).copied().unwrap_or(0.0);
+            e * k.checked_sub(1).map_or(0.0, at) - f * at(k)
+        });
+        let mut expected = vec![(n / d, 3), (f / e, 1)];
+        expected.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if n * e != f * d {
+            assert_eq!(found(c), expected, "{c:?}");
+        }
+
+        let most = [3, 4_000_000][case % 2];
+        let (a, b, c) = (whole(most), whole(most), whole(most));
+        let square = [c * c, 2.0 * b * c, b * b + 2.0 * a * c, 2.0 * a * b, a * a];
+        let roots = quartic(square, Interval::LINE);
+        let sign = b * b - 4.0 * a * c;
+        let ordinary: Vec<_> = quadratic([c, b, a], Interval::LINE).iter().map(|root| root.x).collect();
+        assert_eq!(roots.iter().map(|root| root.x).collect::<Vec<_>>(), ordinary, "{square:?} {roots:?}");
+        let multiplicity = if sign == 0.0 { 4 } else { 2 };
+        assert!(roots.iter().all(|root| root.multiplicity == multiplicity), "{square:?} {roots:?}");
+        count[(sign.partial_cmp(&0.0).unwrap() as i32 + 1) as usize] += 1;
+    }
+    assert!(count.iter().all(|&count| count > 20), "{count:?}");
+}

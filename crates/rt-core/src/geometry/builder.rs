@@ -377,3 +377,58 @@ fn number_by_kind(items: &[Item], nodes: &mut [Node]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    fn cost(items: &[Item]) -> f64 {
+        let mut all = Bounds::EMPTY;
+        items.iter().for_each(|item| all.add(&Bounds::of(item)));
+        f64::from(all.half_area()) * items.len() as f64
+    }
+
+    /// The chosen plane costs no more than any of those between the bins of any axis, by the surface area heuristic: for
+    /// boxes of all sizes, in clusters or not.
+    #[test]
+    fn the_plane_of_least_cost() {
+        let mut random = Random::new(1);
+        for case in 0..300 {
+            let size = random.magnitude(-3.0, 0.0);
+            let clusters: [_; 3] = core::array::from_fn(|_| random.in_cube() * [3.0, 1.0][case % 2]);
+            let flat = [1.0, 1.0, [1.0, 0.01][case / 2 % 2]];
+            let items: Vec<Item> = (0..20 + case as u32)
+                .map(|object| {
+                    let at = clusters[random.below(3) as usize] + random.in_cube() * random.uniform(0.0, 0.3);
+                    let half = random.in_cube().abs() * size * random.magnitude(-1.0, 0.0);
+                    let of = |p: glam::DVec3| core::array::from_fn(|k| p[k] as f32 * flat[k]);
+                    Item { min: of(at - half), max: of(at + half), object, kind: 0 }
+                })
+                .collect();
+            let plane = best_plane(&items).unwrap();
+            let split = |plane: &Plane| {
+                let (left, right): (Vec<Item>, Vec<Item>) =
+                    items.iter().partition(|item| plane.is_left(item));
+                (cost(&left) + cost(&right), left.len())
+            };
+            let (found, left) = split(&plane);
+            assert!(left > 0 && left < items.len());
+            for axis in (0..3).filter(|&axis| plane.binning.factor[axis] > 0.0) {
+                for bin in 1..(4 + items.len() / 8).min(BINS) {
+                    let (other, left) = split(&Plane { axis, bin, ..plane });
+                    // Up to the roundings of the areas.
+                    assert!(
+                        left == 0 || left == items.len() || found <= other * (1.0 + 1e-5),
+                        "{found} {other}"
+                    );
+                }
+            }
+            for (sum, is_left) in [(&plane.left, true), (&plane.right, false)] {
+                let mut all = Bounds::EMPTY;
+                items.iter().filter(|i| plane.is_left(i) == is_left).for_each(|i| all.add(&Bounds::of(i)));
+                assert_eq!((sum.min, sum.max), (all.min, all.max));
+            }
+        }
+    }
+}

@@ -288,3 +288,71 @@ impl Geometry {
         path.blocked
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Sphere, Torus};
+
+    /// An object is entered in all squares that it is seen in, and in few more.
+    #[test]
+    fn squares_are_those_of_the_objects() {
+        let point = DVec3::new(0.25, -0.5, 0.125);
+        let mut count = [0; 2];
+        for (turn, radius) in [(0, 0.4), (7, 0.1), (11, 0.9), (23, 0.02), (31, 0.7)] {
+            let x = f64::from(turn);
+            let way = DVec3::new(libm::sin(x), libm::cos(1.7 * x), libm::sin(2.3 * x + 1.0)).normalize();
+            let shapes: [Shape; 2] = [
+                Sphere::new(point + way * 2.0, radius).unwrap().into(),
+                Torus::new(point - way * 3.0, way, radius, 0.25 * radius).unwrap().into(),
+            ];
+            let geometry = Geometry::builder().add(shapes[0].clone()).add(shapes[1].clone()).build();
+            let cube = geometry.cube_about(point).unwrap();
+            let bit = |object: usize| cube.bits[object];
+            // The sphere fills a cap of this cosine of its half angle; a square is at most this wide.
+            let (sine, wide) = (radius / 2.0, 2.9 / EDGE as f64);
+            for face in 0..6 {
+                for row in 0..EDGE {
+                    for column in 0..EDGE {
+                        let at = |i: usize| (2 * i + 1) as f64 / EDGE as f64 - 1.0;
+                        let mut direction = DVec3::ZERO;
+                        direction[face / 2] = if face % 2 == 0 { 1.0 } else { -1.0 };
+                        direction[(face / 2 + 1) % 3] = at(column);
+                        direction[(face / 2 + 2) % 3] = at(row);
+                        let seen = cube.seen(direction);
+                        assert_eq!(seen, cube.squares[(face * EDGE + row) * EDGE + column]);
+                        let angle = libm::acos(direction.normalize().dot(way));
+                        let half = libm::asin(sine);
+                        assert!(angle > half || seen & bit(0) != 0, "{way} {radius} {direction}");
+                        assert!(angle < half + wide || seen & bit(0) == 0, "{way} {radius} {direction}");
+                        let ray = crate::Ray::new(point, direction);
+                        let hit = shapes[1].hit(&ray, Interval::FORWARD).is_some();
+                        assert!(!hit || seen & bit(1) != 0, "{way} {radius} {direction}");
+                        // The hole of the ring counts as filled: it is 2 3/4 radii wide, with the polygons' corners.
+                        let half = libm::atan(1.3 * radius / (3.0 - 0.27 * radius));
+                        let away = core::f64::consts::PI - angle;
+                        assert!(
+                            away < half + 2.0 * wide || seen & bit(1) == 0,
+                            "{way} {radius} {direction} {away}"
+                        );
+                        count[0] += u32::from(seen & bit(0) != 0);
+                        count[1] += u32::from(seen & bit(1) != 0);
+                    }
+                }
+            }
+        }
+        assert!(count.iter().all(|&count| count > 5000), "{count:?}");
+    }
+
+    /// Rays that begin within 2^10 times the largest coordinate are answered, whatever the scale.
+    #[test]
+    fn how_far_a_cube_reaches() {
+        for scale in [1e-9, 1.0, 1e6] {
+            let sphere = Sphere::new(DVec3::splat(2.0 * scale), scale).unwrap();
+            let geometry = Geometry::builder().add(sphere).build();
+            let cube = geometry.cube_about(DVec3::new(scale, 0.0, 0.0)).unwrap();
+            let from = |x: f64| crate::Ray::new([x * scale, 0.0, 0.0], [1.0, 0.0, 0.0]);
+            assert!(cube.holds(&from(3.0 * 1023.0)) && !cube.holds(&from(3.0 * 1025.0)));
+        }
+    }
+}

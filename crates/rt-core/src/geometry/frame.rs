@@ -371,3 +371,40 @@ impl LocalRay {
         shift: f64::INFINITY,
     };
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_ends_a_little_after_its_hit() {
+        for absolute in [0.0, 1e-9] {
+            let window = Window { absolute };
+            for t in [0.0, 1e-300, 1e-5, 0.7, 1.0, 3e8, -2.0, -1e-7] {
+                let (limit, most) = (window.limit(t), t.abs() * exp2i(-29) + 2.0 * absolute);
+                assert!(limit > t && limit - t <= most.max(f64::from_bits(1)), "{t} {limit}");
+                assert!(limit - t >= t.abs() * exp2i(-31) + 0.5 * absolute, "{t} {limit}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_box_tests_can_hold() {
+        let of =
+            |min: f64, max: f64| Aabb { min: DVec3::new(0.0, min, -1.0), max: DVec3::new(0.0, max, 1.0) };
+        for (min, max, regular) in [
+            (0.0, 1.0, true),
+            (2.0, 2.0, true),
+            (-1e280, 1e280, true),
+            (1.0, 0.0, false),
+            (f64::NAN, 1.0, false),
+            (0.0, f64::NAN, false),
+            (f64::NEG_INFINITY, 0.0, false),
+            (0.0, f64::INFINITY, false),
+            (-1e300, 0.0, false),
+            (0.0, 1e300, false),
+        ] {
+            assert_eq!(is_regular(&of(min, max)), regular, "{min} {max}");
+        }
+    }
+}

@@ -258,4 +258,34 @@ mod tests {
         assert_eq!(square.span(0.75, 2.0), Some((-0.25, 0.25)));
         assert_eq!(square.span(1.5, 2.0), None);
     }
+
+    /// The outline of a torus holds its surface and exceeds it by no more than a polygon of so many corners about each of
+    /// its two circles does.
+    #[test]
+    fn the_outline_of_a_torus() {
+        let (center, axis) = (DVec3::new(1.0, -2.0, 0.5), DVec3::new(0.6, 0.0, 0.8));
+        for (major, minor) in [(1.0, 0.25), (3.0, 0.01), (1.0, 0.75)] {
+            let torus = Shape::from(crate::shape::Torus::new(center, axis, major, minor).unwrap());
+            let Outline::Hull(corners) = Outline::of(&torus, DVec3::ZERO) else { panic!("a hull") };
+            let wider = 1.0 / libm::cos(PI / CORNERS as f64);
+            let tube = minor / libm::cos(0.5 * FRAC_PI_4);
+            for &corner in &corners {
+                let local = corner - center;
+                let height = local.dot(axis);
+                let rho = (local - axis * height).length();
+                assert!(height.abs() <= minor * 1.001 && rho <= (major + minor) * wider * 1.001, "{local}");
+                assert!(
+                    rho >= major - minor * 1.001 && libm::hypot(rho / wider - major, height) <= tube * 1.001
+                );
+            }
+            // No point of the surface is farther out, in any direction, than the farthest corner.
+            for i in 0..2000 {
+                let x = f64::from(i);
+                let way = DVec3::new(libm::sin(x), libm::cos(1.7 * x), libm::sin(2.3 * x + 1.0)).normalize();
+                let up = way.dot(axis);
+                let farthest = center.dot(way) + major * sqrt(1.0 - up * up) + minor;
+                assert!(corners.iter().any(|corner| corner.dot(way) >= farthest), "{way}");
+            }
+        }
+    }
 }

@@ -300,3 +300,6 @@ impl<Q: Query> Packet<'_, Q> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -143,3 +143,22 @@ store! {
     7 triangles Triangle Triangle;
     8 customs Custom Arc<dyn Primitive>;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bytes_are_those_of_the_shapes_and_their_indices() {
+        let mut store = Store::default();
+        assert_eq!(store.bytes(), 0);
+        let (mut counts, least) = ([0; Store::KINDS], 1000 * (size_of::<Sphere>() + 4));
+        counts[Store::BALL as usize] = 1000;
+        store.reserve(counts);
+        let sphere = Shape::from(Sphere::new([0.0; 3], 1.0).unwrap());
+        (0..1000).for_each(|object| store.push(&sphere, object));
+        assert_eq!(store.count(Store::BALL), 1000);
+        // Memory comes in pages, and may be more than was asked for.
+        assert!((least..2 * least).contains(&store.bytes()), "{} {least}", store.bytes());
+    }
+}

@@ -6,12 +6,16 @@
 
 mod avx2;
 mod boxes;
+#[cfg(test)]
+pub(crate) mod counted;
 mod lanes;
 mod level;
 mod memory;
 mod packet;
 mod stack;
 mod task;
+#[cfg(test)]
+mod tests;
 
 pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};

@@ -157,7 +157,7 @@ fn inverse_cube_root(x: f64) -> f64 {
 fn three<P: Product>(c: &[f64; 4], mut x: [f64; 3]) -> Option<Simple<3>> {
     let greater = |a: f64, b: f64| if a > b { a } else { b };
     let less = |a: f64, b: f64| if a < b { a } else { b };
-    // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-58 after four.
+    // Corrections at least square the relative error while the discs are apart: 1e-2 is below 2^-60 after four.
     for _ in 0..5 {
         let (p, size) = compensated::<P, 4, 3>(c, &x);
         let [d01, d02, d12] = [x[0] - x[1], x[0] - x[2], x[1] - x[2]];
@@ -228,4 +228,144 @@ fn one<P: Product>(
         x = next;
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadratic;
+    use super::*;
+    use crate::double::Double;
+    use crate::kernel::{Task, run};
+    use crate::testing::Random;
+
+    /// `(x - r) ((x - re)^2 + s) lead`; for negative `s` of three real roots.
+    fn cubic(r: f64, re: f64, s: f64, lead: f64) -> [f64; 4] {
+        let (b, c) = (-2.0 * re, re * re + s);
+        [-r * c * lead, (c - r * b) * lead, (b - r) * lead, lead]
+    }
+
+    /// Whether the list is right, to 0.51 units in the last place: by the careful solver.
+    fn are_the_roots(c: &[f64; 4], found: &[crate::poly::Root]) -> bool {
+        let truth = quartic::double([c[0], c[1], c[2], c[3], 0.0].map(Double::from));
+        truth.len() == found.len()
+            && truth.iter().zip(found).all(|(truth, root)| {
+                (truth.x - root.x).high.abs() <= 0.51 * (root.x.abs().next_up() - root.x.abs())
+            })
+    }
+
+    /// The only root from a place near it: `off` of its size away, in the terms of the formula.
+    struct One([f64; 4], f64, f64);
+
+    impl Task for One {
+        type Output = Option<Roots<3>>;
+        fn run<P: Product>(self) -> Self::Output {
+            let One(c, r, off) = self;
+            let (t, b) = (c[2] / 3.0, c[1] * c[3]);
+            let v = (c[3] * r + t) * (1.0 + off);
+            let (q, q_size) = (b / 3.0 - t * t, b.abs() / 3.0 + t * t);
+            let found = one::<P>(&c, (v - t) / c[3], c[3].copysign(v * c[3]), v.abs(), q, q_size)?;
+            Some(found.inside(&Interval::LINE))
+        }
+    }
+
+    struct Quick([f64; 4]);
+
+    impl Task for Quick {
+        type Output = Option<Roots<3>>;
+        fn run<P: Product>(self) -> Self::Output {
+            Some(quick::<P>(self.0)?.inside(&Interval::LINE))
+        }
+    }
+
+    /// What is certified is true, however far off the first approximation; and from near it is certified.
+    #[test]
+    fn one_root_is_certified_from_afar() {
+        let mut random = Random::new(1);
+        let mut count = [0; 2];
+        for _ in 0..20_000 {
+            // The real root farther from the middle of all three than the others from it: then it is the greatest in these terms.
+            let (re, height) = (random.uniform(-1.0, 1.0), random.magnitude(-2.0, 0.0));
+            let r = re + random.sign() * random.uniform(0.5, 3.0);
+            let size = random.magnitude(-3.0, 3.0);
+            let c = cubic(r * size, re * size, height * height * size * size, random.magnitude(-2.0, 2.0));
+            // Up to a third: then the slope has the sign of that at the root, which is at least twice as far out as the extrema.
+            let off = random.magnitude(-16.0, -0.5) * random.sign();
+            let found = run(One(c, r * size, off));
+            if let Some(found) = &found {
+                assert!(are_the_roots(&c, found), "{c:?} {off:?}: {found:?}");
+            }
+            if off.abs() < 1e-4 {
+                count[usize::from(found.is_some())] += 1;
+            }
+        }
+        assert!(count[0] == 0 && count[1] > 15_000, "{count:?}");
+    }
+
+    /// What must not become slow unseen: the quick way answers until roots are nearer than this.
+    #[test]
+    fn nearly_equal_roots_are_told_quickly() {
+        let mut random = Random::new(2);
+        let mut count = [[0; 2]; 2];
+        for _ in 0..20_000 {
+            let r = random.uniform(0.5, 2.0) * random.sign();
+            let apart = random.magnitude(-9.0, -1.0);
+            let s = -apart * apart * 0.25 * random.sign();
+            let c = cubic(r, r + random.sign(), s, random.magnitude(-2.0, 2.0));
+            let found = run(Quick(c));
+            if apart > 1e-4 {
+                count[usize::from(s > 0.0)][usize::from(found.is_some())] += 1;
+            }
+            if let Some(found) = &found {
+                assert!(are_the_roots(&c, found), "{c:?}: {found:?}");
+            }
+        }
+        assert!(count.iter().all(|&[left, told]| left == 0 && told > 3000), "{count:?}");
+    }
+
+    struct Balanced([f64; 4]);
+
+    impl Task for Balanced {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            balanced::<P>(&self.0)
+        }
+    }
+
+    struct BalancedQuadratic([f64; 3]);
+
+    impl Task for BalancedQuadratic {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            super::super::quadratic::balanced::<P>(&self.0, false)
+        }
+    }
+
+    /// Of any size, roots have the very bits that the quick way gives those of ordinary size.
+    #[test]
+    fn balanced_as_quick() {
+        let mut random = Random::new(3);
+        let listed = |roots: &[crate::poly::Root], k: i32| {
+            roots.iter().map(|root| (root.x * exp2i(k), root.multiplicity)).collect::<alloc::vec::Vec<_>>()
+        };
+        for case in 0..4000 {
+            let r = random.uniform(0.5, 2.0) * random.sign();
+            let c = cubic(r, random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0), random.uniform(0.5, 2.0));
+            let (place, value) = (random.below(400) as i32 - 200, random.below(300) as i32 - 150);
+            let at = |k: usize| exp2i(value - place * k as i32);
+            let scaled = [c[0] * at(0), c[1] * at(1), c[2] * at(2), c[3] * at(3)];
+            if let Some(quick) = run(Quick(c)) {
+                let found = run(Balanced(scaled)).expect("as quickly as of ordinary size");
+                assert_eq!(listed(&found, -place), listed(&quick, 0), "{c:?} {place} {value}");
+            } else {
+                assert!(case > 0);
+            }
+            let c = [c[0], c[1], c[2]];
+            let quick = quadratic(c, Interval::LINE);
+            if let Some(found) = run(BalancedQuadratic([scaled[0], scaled[1], scaled[2]])) {
+                assert_eq!(listed(&found, -place), listed(&quick, 0), "{c:?} {place} {value}");
+            } else {
+                assert!((c[1] * c[1] - 4.0 * c[0] * c[2]).abs() < 1e-6 || c[0] * c[2] == 0.0, "{c:?}");
+            }
+        }
+    }
 }

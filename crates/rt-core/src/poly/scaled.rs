@@ -254,3 +254,19 @@ impl Local {
         Value { value, error: size * ERROR, slope: slope.to_f64(), curvature, exponent: self.exponent }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_two_of_any_size() {
+        for power in [-1074, -1073, -1022, -700, -3, -2, -1, 0, 1, 2, 3, 4, 5, 700, 1023] {
+            let expected = if power < -1022 { f64::from_bits(1 << (power + 1074)) } else { exp2i(power) };
+            assert_eq!(ldexp(1.0, power), expected, "{power}");
+            assert_eq!(ldexp(-1.0, power), -expected, "{power}");
+        }
+        assert_eq!(ldexp(f64::from_bits(1), 2097), exp2i(1023));
+        assert_eq!((ldexp(1.0, 2000), ldexp(1.0, -2000)), (f64::INFINITY, 0.0));
+    }
+}

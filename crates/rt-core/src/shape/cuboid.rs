@@ -750,4 +750,109 @@ mod tests {
         assert!(matches!(Cuboid::new([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]), Err(Error::Unordered { .. })));
         assert!(matches!(Cuboid::new([f64::NAN; 3], [1.0; 3]), Err(Error::NotFinite { .. })));
     }
+
+    /// What must not become slow unseen, and must be the same: the few comparisons answer nearly all plain rays, as the
+    /// slabs do; also rays along axes and within planes, and intervals that end at the very crossings.
+    #[test]
+    fn plainly_as_by_slabs() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [[0_u32; 2]; 3];
+        for case in 0..12_000 {
+            let (min, max) = (random.in_cube() - 1.5, random.in_cube() + 1.5);
+            let cuboid = Cuboid::new(min, max).unwrap();
+            let inside = min + (random.in_cube() * 0.49 + 0.5) * (max - min);
+            let mut direction = random.direction();
+            let mut origin = inside + random.direction() * random.uniform(0.0, 6.0);
+            if !random.once_in(3) {
+                // Aimed.
+                direction = inside - origin;
+            }
+            let kind = case % 3;
+            if kind > 0 {
+                direction[case / 3 % 3] = 0.0 * random.sign();
+                if kind == 2 {
+                    direction = DVec3::AXES[case / 3 % 3] * random.sign() + 0.0 * random.sign();
+                }
+                origin = if random.once_in(8) { min } else { origin };
+            }
+            let ray = Ray::new(origin, direction);
+            let (entry, leave) = cuboid.span(&ray).ends();
+            let mut end = || match random.below(4) {
+                0 => entry,
+                1 => leave,
+                2 => 0.0,
+                _ => random.uniform(-9.0, 9.0),
+            };
+            let all = [Interval::LINE, Interval::FORWARD, Interval::new(end(), end())];
+            for (number, within) in all.into_iter().enumerate() {
+                let found = cuboid.plainly(&ray, within);
+                if let (Ok(found), Ok(other)) = (found, cuboid.span(&ray).first(within)) {
+                    assert_eq!(found, other, "{cuboid:?} {ray:?} {within:?}");
+                } else if let Ok(found) = found {
+                    assert_eq!(found, cuboid.hit_exactly(&ray, within), "{cuboid:?} {ray:?} {within:?}");
+                }
+                if number < 2 {
+                    count[kind][usize::from(found.is_ok())] += 1;
+                }
+            }
+        }
+        let most = [0.03, 0.14, 0.65];
+        let few = |([left, told], most): ([u32; 2], f64)| f64::from(left) < most * f64::from(left + told);
+        assert!(count.into_iter().zip(most).all(few), "{count:?}");
+    }
+
+    /// What must not become slow unseen, and must be true: the slabs of turned boxes tell nearly all plain crossings; and of
+    /// directions at the end of the range of `f64` neither way tells anything that exact arithmetic does not.
+    #[test]
+    fn slabs_of_turned_boxes_and_of_extreme_directions() {
+        let mut random = crate::testing::Random::new(2);
+        let key = |hit: Hit| (hit.part(), hit.root());
+        let t = |hit: Option<Hit>| hit.map_or(0.0, |hit| hit.t());
+        let mut count = [0_u32; 2];
+        for _ in 0..3000 {
+            let cuboid = Cuboid::new(random.in_cube() - 1.5, random.in_cube() + 1.5).unwrap();
+            let axis = random.direction();
+            let by = Similarity::IDENTITY.rotated(axis, random.uniform(-180.0, 180.0)).unwrap();
+            let turned = cuboid.transformed(&by).unwrap();
+            let origin = random.direction() * random.uniform(3.0, 9.0);
+            let ray = Ray::new(origin, random.in_cube() * 1.5 - origin);
+            let first = turned.slabs(&ray).first(Interval::FORWARD);
+            count[usize::from(first.is_ok())] += 1;
+            if let Ok(first) = first {
+                let exact = turned.hit_exactly(&ray, Interval::FORWARD);
+                assert_eq!(first.map(key), exact.map(key), "{turned:?} {ray:?}");
+                assert!((t(first) - t(exact)).abs() < 1e-12, "{turned:?} {ray:?}");
+            }
+
+            let mut direction = random.direction();
+            for k in 0..3 {
+                direction[k] *= [1.0, 1e-300, 1e300, 1.7e308][random.below(4) as usize];
+            }
+            let ray = Ray::new(origin, direction);
+            if let Ok(found) = cuboid.plainly(&ray, Interval::FORWARD) {
+                assert!(direction.abs().element_sum() < exp2i(1000), "{ray:?}");
+                let exact = cuboid.hit_exactly(&ray, Interval::FORWARD);
+                assert_eq!(found.map(key), exact.map(key), "{cuboid:?} {ray:?}");
+                assert!((t(found) - t(exact)).abs() <= 10.0 * U * t(exact), "{cuboid:?} {ray:?}");
+            }
+        }
+        assert!(count[0] < 30 && count[1] > 2900, "{count:?}");
+    }
+
+    /// Every face has the whole unit square, seen from outside with `y` up (or `z` where there is no `y`).
+    #[test]
+    fn coordinates_of_the_faces() {
+        let (corner, size) = (DVec3::new(1.0, -2.0, 3.0), DVec3::new(2.0, 4.0, 8.0));
+        let cuboid = Cuboid::new(corner, corner + size).unwrap();
+        let share = DVec3::new(0.25, 0.125, 0.375);
+        let expected =
+            [(0.375, 0.125), (0.625, 0.125), (0.25, 0.375), (0.25, 0.625), (0.75, 0.125), (0.25, 0.125)];
+        for (face, (u, v)) in expected.into_iter().enumerate() {
+            let out = DVec3::AXES[face / 2] * if face % 2 == 0 { -1.0 } else { 1.0 };
+            let ray = Ray::new(corner + share * size + out * 20.0, -out);
+            let hit = cuboid.hit(&ray, Interval::FORWARD).unwrap();
+            let surface = cuboid.surface(&ray, hit);
+            assert_eq!((hit.part(), surface.uv(), surface.normal), (face as u32, DVec2::new(u, v), out));
+        }
+    }
 }

@@ -266,4 +266,35 @@ mod tests {
         assert!(matches!(Disk::new([0.0; 3], [0.0, 1.0, 0.0], f64::NAN), Err(Error::NotPositive { .. })));
         assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
     }
+
+    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
+    #[test]
+    fn plainly_as_exactly() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [0_u32; 3];
+        for case in 0..8000 {
+            let disk = Disk::new(random.in_cube(), random.direction(), random.uniform(0.1, 1.0)).unwrap();
+            let ray = Ray::new(random.direction() * 4.0, random.direction());
+            let mut target = disk.center + random.in_cube() * disk.radius;
+            if case >= 4000 {
+                // Past the rim by nearly nothing.
+                let out = disk.normal.cross(random.direction()).normalize();
+                target =
+                    disk.center + out * (disk.radius * (1.0 + random.sign() * random.magnitude(-18.0, -8.0)));
+            }
+            let ray = Ray::new(ray.origin, target - ray.origin);
+            let Ok(found) = disk.plainly(&ray, Interval::FORWARD) else {
+                count[0] += u32::from(case < 4000);
+                continue;
+            };
+            let at = meeting::meet(&disk, &ray).unwrap();
+            let inside = run(InDisk { at: &at, radius: disk.radius });
+            assert_eq!(found.is_some(), inside, "{disk:?} {ray:?}");
+            if let Some(hit) = found {
+                assert!((hit.t() - at.t).abs() <= exp2i(-30), "{disk:?} {ray:?}");
+            }
+            count[1 + usize::from(inside)] += 1;
+        }
+        assert!(count[0] < 10 && count[1] > 1000 && count[2] > 1000, "{count:?}");
+    }
 }

@@ -254,3 +254,53 @@ pub(super) fn outward(anchor: DVec3, least: DVec3, greatest: DVec3) -> Aabb {
     let (a, b) = (anchor + least, anchor + greatest);
     Aabb { min: DVec3::new(down(a.x), down(a.y), down(a.z)), max: DVec3::new(up(b.x), up(b.y), up(b.z)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn sides_of_an_interval() {
+        let at = |t: f64, slack: f64, sound: bool| Rough { t, w: DVec3::ZERO, slack, error: 0.0, sound };
+        let rough = at(1.0, 0.25, true);
+        for (min, max, expected) in [
+            (0.0, 2.0, (true, false)),
+            (-5.0, 0.5, (false, true)),
+            (1.5, 9.0, (false, true)),
+            (0.875, 2.0, (false, false)),
+            (0.0, 1.125, (false, false)),
+            (1.125, 2.0, (false, false)),
+            (0.0, 0.875, (false, false)),
+        ] {
+            assert_eq!(rough.sides(Interval::new(min, max)), expected, "{min} {max}");
+            assert_eq!(at(1.0, 0.25, false).sides(Interval::new(min, max)), (false, false));
+        }
+    }
+
+    /// The bounds hold, and are not larger than the roundings can be by more than two hundred times.
+    #[test]
+    fn a_parameter_is_known_within_its_slack() {
+        let mut random = Random::new(1);
+        for _ in 0..4000 {
+            let (anchor, n) = (random.in_cube(), random.direction());
+            let ray = Ray::new(random.in_cube() * 4.0, random.direction());
+            let rough = Rough::new(anchor, n, &ray);
+            let dot = |a: [Double; 3], b: [Double; 3]| {
+                a.into_iter().zip(b).fold(Double::ZERO, |sum, (a, b)| sum + a.mul::<crate::kernel::Dekker>(b))
+            };
+            let w = [0, 1, 2].map(|k| Double::difference(anchor[k], ray.origin[k]));
+            let slope = dot(doubles(n), doubles(ray.direction));
+            let t = dot(doubles(n), w).div::<crate::kernel::Dekker>(slope);
+            assert!((t - rough.t).high.abs() <= rough.slack, "{anchor} {n} {ray:?}");
+            // u |w| over the cosine, once more for the slope.
+            let least = U * (anchor - ray.origin).length() / (slope.high * slope.high);
+            assert!(rough.slack <= 200.0 * least, "{anchor} {n} {ray:?} {}", rough.slack / least);
+            for (k, &w) in w.iter().enumerate() {
+                let exact = t.mul::<crate::kernel::Dekker>(Double::from(ray.direction[k])) - w;
+                let local = ray.direction[k] * rough.t - rough.w[k];
+                assert!((exact - local).high.abs() <= rough.error, "{anchor} {n} {ray:?}");
+            }
+        }
+    }
+}

@@ -332,3 +332,78 @@ pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
     let scale = exp2i(-power);
     (w.map(|x| x.scale_exact(scale)), power)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    struct Somewhere<'a>(&'a ExactPlane, &'a Ray);
+
+    impl Task for Somewhere<'_> {
+        type Output = Option<Place>;
+        fn run<P: Product>(self) -> Option<Place> {
+            let Somewhere(plane, ray) = self;
+            place::<P>(plane, plane.offset, &difference(plane.anchor, ray.origin), ray.direction)
+        }
+    }
+
+    /// Double-double without scaling finds the places of all plain rays, within a bound that covers its roundings and is not
+    /// much more than those over the cosine.
+    #[test]
+    fn places_of_plain_rays() {
+        let mut random = Random::new(1);
+        for case in 0..2000 {
+            let (anchor, n) = (random.in_cube(), random.direction());
+            let axis = (case % 2 == 0).then_some((case / 2 % 3) as u8);
+            let n = axis.map_or(n, |k| DVec3::AXES[usize::from(k)]);
+            let plane = ExactPlane { anchor, normal: doubles(n), axis, offset: 0.0 };
+            let origin = random.in_cube() * 10.0;
+            let mut direction = random.direction() * random.magnitude(-3.0, 3.0);
+            if case % 4 > 1 {
+                // At the anchor, nearly: there the place may have too few digits.
+                direction = anchor + random.in_cube() * random.magnitude(-40.0, -5.0) - origin;
+            }
+            let ray = Ray::new(origin, direction);
+            let Some(Place { t, local, error }) = run(Somewhere(&plane, &ray)) else {
+                assert!(case % 4 > 1, "{plane:?} {ray:?}");
+                continue;
+            };
+            assert!(error < exp2i(-60) * largest(DVec3::from_array(local.map(|x| x.high))), "{error:e}");
+            let reach = largest(anchor - origin);
+            let ways = t.high.abs() * largest(ray.direction) + reach;
+            let cosine = ray.direction.normalize().dot(n).abs();
+            assert!(error >= exp2i(-100) * ways, "{error:e}");
+            assert!(error <= exp2i(-95) * ways / cosine, "{error:e} {ways} {cosine}");
+            let off = local
+                .iter()
+                .zip(n.to_array())
+                .fold(Double::ZERO, |sum, (&x, n)| sum + x.mul::<crate::kernel::Dekker>(Double::from(n)));
+            assert!(off.high.abs() <= 3.0 * error, "{off:?} {error:e}");
+        }
+    }
+
+    struct Dot([Double; 3], [Double; 3], f64);
+
+    impl Task for Dot {
+        type Output = (Double, f64);
+        fn run<P: Product>(self) -> Self::Output {
+            dot::<P>(&self.0, &self.1, self.2)
+        }
+    }
+
+    /// A product that cancels is right to 2^-99 of the sizes of its terms, which come with it.
+    #[test]
+    fn products_that_cancel() {
+        let mut random = Random::new(2);
+        for _ in 0..1000 {
+            let (a, b) = (random.in_cube(), random.in_cube());
+            let (rough, size) = run(Dot(doubles(a), doubles(b), 0.0));
+            let terms = (a * b).abs().element_sum();
+            assert!((size / terms - 1.0).abs() < 1e-15, "{size} {terms}");
+            let (rest, size) = run(Dot(doubles(a), doubles(b), -rough.high));
+            assert!((size / (terms + rough.high.abs()) - 1.0).abs() < 1e-15, "{size} {terms}");
+            assert!((rest - rough.low).high.abs() <= exp2i(-99) * size, "{a} {b}");
+        }
+    }
+}

@@ -501,3 +501,36 @@ fn down(x: f64) -> f64 {
 fn up(x: f64) -> f64 {
     x.next_up().next_up()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first crossing in an interval, by where its ends lie: sure wherever the margin lets it be.
+    #[test]
+    fn the_first_of_two_crossings() {
+        let span = Span { enter: 1.0, leave: 3.0, margin: 0.25 };
+        let (first, second) = (Some(Some((1.0, 0))), Some(Some((3.0, 1))));
+        for (min, max, expected) in [
+            (0.0, 9.0, first),
+            (0.0, 2.0, first),
+            (2.0, 9.0, second),
+            (2.0, 2.5, Some(None)),
+            (-1.0, 0.5, Some(None)),
+            (4.0, 5.0, Some(None)),
+            // An end within the margin of a crossing that matters.
+            (0.875, 9.0, None),
+            (1.125, 9.0, None),
+            (0.0, 1.125, None),
+            (0.0, 0.875, None),
+            (2.0, 2.875, None),
+            (2.0, 3.125, None),
+            (3.125, 9.0, None),
+            // Or of one that does not.
+            (0.0, 3.0, first),
+        ] {
+            let found = span.first(Interval::new(min, max)).map(|hit| hit.map(|hit| (hit.t(), hit.root())));
+            assert_eq!(found, expected, "{min} {max}");
+        }
+    }
+}

@@ -423,4 +423,64 @@ mod tests {
         assert_eq!(fine.normal(), DVec3::Z);
         assert!(matches!(fine.with_normals(DVec3::Z, DVec3::ZERO, DVec3::Z), Err(Error::ZeroLength { .. })));
     }
+
+    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
+    #[test]
+    fn plainly_as_exactly() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = [0_u32; 3];
+        for case in 0..8000 {
+            let size = if case < 4000 { 1.0 } else { random.magnitude(-4.0, 4.0) };
+            let corners = [(); 3].map(|()| random.in_cube() * size);
+            let Ok(triangle) = Triangle::new(corners[0], corners[1], corners[2]) else { continue };
+            let origin = random.direction() * 4.0;
+            let mut target = (corners[0] + corners[1] + corners[2]) / 3.0 + random.in_cube() * 0.3;
+            if case >= 4000 {
+                // Past an edge by nearly nothing.
+                target = corners[0] + (corners[1] - corners[0]) * random.uniform(-0.1, 1.1);
+                target += random.in_cube() * (size * random.magnitude(-18.0, -8.0));
+            }
+            let ray = Ray::new(origin, target - origin);
+            let Ok(found) = triangle.plainly(&ray, Interval::FORWARD) else {
+                count[0] += u32::from(case < 4000);
+                continue;
+            };
+            let signs = run(EdgeSigns { corners: triangle.corners(), ray: &ray });
+            let inside = !(signs.contains(&-1) && signs.contains(&1));
+            assert_eq!(found.is_some(), inside, "{triangle:?} {ray:?}");
+            if let Some(hit) = found {
+                let t = meeting::meet(&triangle, &ray).unwrap().t;
+                assert!((hit.t() - t).abs() <= exp2i(-30) * size.max(1.0), "{triangle:?} {ray:?}");
+            }
+            count[1 + usize::from(inside)] += 1;
+        }
+        assert!(count[0] < 40 && count[1] > 800 && count[2] > 800, "{count:?}");
+    }
+
+    /// Texture coordinates are right to a unit in the last place, however thin the triangle and far its corners.
+    #[test]
+    fn weights_keep_their_digits() {
+        let mut random = crate::testing::Random::new(2);
+        let whole = |random: &mut crate::testing::Random| f64::from(random.below(2000)) - 1000.0;
+        let mut count = 0;
+        for _ in 0..2000 {
+            // Whole numbers: the weights are fractions whose numbers are exact.
+            let [a, b, c] = [(); 3].map(|()| DVec3::new(whole(&mut random), whole(&mut random), 7.0));
+            let (e, f) = (b - a, c - a);
+            let area = e.x * f.y - e.y * f.x;
+            if area == 0.0 {
+                continue;
+            }
+            let triangle = Triangle::new(a, b, c).unwrap();
+            let p = DVec3::new(whole(&mut random), whole(&mut random), 1000.0);
+            let ray = Ray::new(p, [0.0, 0.0, -3.0]);
+            let Some(hit) = triangle.hit(&ray, Interval::FORWARD) else { continue };
+            count += 1;
+            let l = p - a;
+            let expected = DVec2::new((l.x * f.y - l.y * f.x) / area, (e.x * l.y - e.y * l.x) / area);
+            let uv = triangle.surface(&ray, hit).uv();
+            assert!((uv - expected).abs().cmple(expected.abs() * f64::EPSILON).all(), "{uv} {expected}");
+        }
+        assert!(count > 100, "{count}");
+    }
 }

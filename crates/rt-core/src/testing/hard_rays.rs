@@ -108,3 +108,65 @@ impl HardRays {
         if r.once_in(4) { direction * r.magnitude(-12.0, 12.0) } else { direction }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How far the line passes from a point, and whether the point lies ahead.
+    fn passes(ray: &Ray, point: DVec3) -> (f64, bool) {
+        let (way, unit) = (point - ray.origin, ray.direction.normalize());
+        (way.cross(unit).length(), way.dot(unit) > 0.0)
+    }
+
+    #[test]
+    fn rays_go_where_they_are_said_to_go() {
+        let bounds = Aabb::new(DVec3::new(-1.0, 0.0, 2.0), DVec3::new(1.0, 6.0, 4.0));
+        let mut rays = HardRays::new(1, Some(bounds));
+        assert_eq!(
+            (rays.size(), rays.center, rays.half),
+            (3.0, DVec3::new(0.0, 3.0, 3.0), DVec3::new(1.0, 3.0, 1.0))
+        );
+        let (mut axial, mut long, mut beside) = (0, 0, 0.0_f64);
+        for _ in 0..1000 {
+            let target = rays.center + rays.random().in_cube();
+            let ray = rays.at(target);
+            let far = (ray.origin - target).length();
+            let (off, ahead) = passes(&ray, target);
+            assert!(ahead && off <= 1e-15 * (far + 10.0), "{ray:?}");
+            assert!(far > 0.0 && far < 3.1e9, "{far}");
+            axial += u32::from(ray.direction.to_array().contains(&0.0));
+            long += u32::from(!(1e-3..1e10).contains(&ray.direction.length()));
+
+            let normal = rays.random().direction();
+            let ray = rays.grazing(target, normal);
+            let (off, ahead) = passes(&ray, target);
+            let far = (ray.origin - target).length();
+            let slope = ray.direction.normalize().dot(normal).abs();
+            assert!(ahead && off <= 0.11 * (far + 3.0) && slope < 0.11, "{ray:?}");
+            beside = beside.max(off);
+            let lift = (ray.origin - target).dot(normal).abs();
+            assert!(lift <= 0.11 * (far + 3.0));
+
+            let ray = rays.starting_at(target);
+            assert!((ray.origin - target).abs().cmple(target.abs() * 1e-15).all());
+        }
+        assert!(axial > 200 && long > 50, "{axial} {long}");
+        // By a tenth of the size at most, and nearly so sometimes.
+        assert!((0.2..0.31).contains(&beside), "{beside}");
+        for _ in 0..200 {
+            let ray = rays.at_feature();
+            let steps = [-1.0, 0.0, 1.0];
+            let met = steps.iter().any(|x| {
+                steps.iter().any(|y| {
+                    steps.iter().any(|z| {
+                        let corner = rays.center + DVec3::new(*x, *y, *z) * rays.half;
+                        passes(&ray, corner).0 <= 1e-15 * ((ray.origin - corner).length() + 10.0)
+                    })
+                })
+            });
+            assert!(met, "{ray:?}");
+            assert!(rays.aimed().is_valid());
+        }
+    }
+}

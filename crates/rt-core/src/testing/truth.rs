@@ -487,4 +487,40 @@ mod tests {
         assert!(line.judge(&model, distance, &[-t], &[cosine]).is_err());
         assert!(line.judge(&model, distance, &[-t, 0.0, t], &[cosine; 3]).is_err());
     }
+
+    /// Every kind of shape is judged, flat ones by whether they are crossed.
+    #[test]
+    fn every_kind_has_an_oracle() {
+        use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane};
+        let (zero, z) = (DVec3::ZERO, DVec3::Z);
+        let flat: [(Shape, bool); 3] = [
+            (Plane::new(zero, z).unwrap().into(), true),
+            (Disk::new(zero, z, 1.0).unwrap().into(), false),
+            (Triangle::new(zero, DVec3::X, DVec3::Y).unwrap().into(), false),
+        ];
+        for (shape, everywhere) in flat {
+            let model = Model::new(&shape).unwrap();
+            let Body::Flat(flat) = &model.body else { panic!("no flat shape") };
+            for (x, y, inside) in
+                [(0.25, 0.25, true), (0.75, 0.75, false), (-0.1, 0.3, false), (2.0, 0.1, false)]
+            {
+                let ray = Ray::new([x, y, 3.0], [0.0, 0.0, -2.0]);
+                let line = Line::new(&ray, &model).unwrap();
+                let inside = inside || everywhere || (x * x + y * y < 1.0 && matches!(shape, Shape::Disk(_)));
+                let within = if x * x + y * y == 1.125 { None } else { Some(inside) };
+                assert!(within.is_none() || flat.is_crossed(&line, &model) == within, "{shape:?} {x} {y}");
+                assert_eq!(check_crossings(&shape, &ray), Ok(()));
+            }
+        }
+        let solid: [Shape; 5] = [
+            Sphere::new(zero, 1.0).unwrap().into(),
+            Cuboid::new(-DVec3::ONE, DVec3::ONE).unwrap().into(),
+            Cylinder::new(zero, z, 1.0).unwrap().into(),
+            Cone::new(zero, 1.0, z, 0.5).unwrap().into(),
+            Torus::new(zero, z, 2.0, 0.5).unwrap().into(),
+        ];
+        for shape in solid {
+            assert!(Model::new(&shape).is_some(), "{shape:?}");
+        }
+    }
 }

@@ -298,3 +298,78 @@ impl Task for Careful {
         bracket::solve::<P, 4>(&self.c)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::multiply_back;
+    use super::*;
+    use crate::testing::Random;
+
+    /// Both first guesses for roots of different size are what their names say: factors of the polynomial.
+    #[test]
+    fn roots_of_different_size_fall_into_factors() {
+        let mut random = Random::new(1);
+        let mut seen = [0; 6];
+        for case in 0..6000 {
+            // Roots in groups; between the groups a factor of 2^70 or, for the reversed polynomial, of 2^10.
+            let apart = case % 6;
+            let gap = if apart == 0 { 10 } else { 70 };
+            let mut power = 0;
+            let roots: [f64; 4] = core::array::from_fn(|i| {
+                let parted = match apart {
+                    0 => i == 1,
+                    1 => i == 1 || i == 2,
+                    2 => i == 2 || i == 3,
+                    n => i == n - 2,
+                };
+                power += i32::from(parted) * gap;
+                random.sign() * random.uniform(0.3, 1.0) * f64::from(1 + i as u32) * exp2i(power)
+            });
+            let mut c = [1.0, 0.0, 0.0, 0.0, 0.0];
+            for root in roots {
+                c = core::array::from_fn(|k| if k == 0 { -root * c[0] } else { c[k - 1] - root * c[k] });
+            }
+            let (y, _, spread) = balanced(&c).unwrap();
+            if apart > 0 {
+                let factors = parted(&y).unwrap();
+                assert!(multiply_back(&y, &factors, exp2i(-29)), "{c:?} {factors:?}");
+                seen[apart] += 1;
+            } else if let Some(factors) = reversed(&y, spread) {
+                seen[0] += 1;
+                assert!(multiply_back(&y, &factors, exp2i(-16)), "{c:?} {factors:?}");
+            }
+        }
+        assert!(seen[0] > 990 && seen[1..] == [1000; 5], "{seen:?}");
+    }
+
+    struct Quick([f64; 5]);
+
+    impl Task for Quick {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            quick::<P>(&self.0)
+        }
+    }
+
+    /// What must not become slow unseen: nothing but clusters of three or four roots goes to the careful solver.
+    #[test]
+    fn quick_ways_answer() {
+        let (mut random, mut count) = (Random::new(2), [0; 3]);
+        for case in 0..12_000 {
+            let near = random.magnitude(-11.0, -1.0);
+            let mut roots: [f64; 4] =
+                core::array::from_fn(|i| random.sign() * (i as f64 + random.uniform(0.5, 1.0)));
+            match case % 3 {
+                0 => roots[1] = roots[0] + near,
+                1 => roots.iter_mut().skip(2).for_each(|x| *x *= near),
+                _ => {}
+            }
+            let mut c = [random.uniform(1.0, 2.0), 0.0, 0.0, 0.0, 0.0];
+            for root in roots {
+                c = core::array::from_fn(|k| if k == 0 { -root * c[0] } else { c[k - 1] - root * c[k] });
+            }
+            count[case % 3] += u32::from(run(Quick(c)).is_some());
+        }
+        assert!(count.iter().all(|&count| count > 3900), "{count:?}");
+    }
+}

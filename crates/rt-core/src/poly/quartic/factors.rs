@@ -9,6 +9,7 @@
 use super::super::Roots;
 use super::super::exact::multiple_root;
 use super::super::scaled::Polynomial;
+use super::discs::LEFT;
 use super::split::{Factor, split};
 use crate::double::{Double, two_sum};
 use crate::kernel::Product;
@@ -216,8 +217,7 @@ fn factor<P: Product>(
     if d.high < -ed {
         return true;
     }
-    // Less than a thirty-second of a unit roundoff may be wrong before the last rounding.
-    let sharp = |z: Double, e: f64| e <= exp2i(-58) * (z.high + origin).abs();
+    let sharp = |z: Double, e: f64| e <= LEFT * (z.high + origin).abs();
     if !(d.high > ed) {
         // A double root, if anything: only the exact test can say so.
         let x = if l == 1.0 { h } else { h.div::<P>(Double::from(l)) };
@@ -250,7 +250,7 @@ fn linear<P: Product>(m: Double, n: Double, em: f64, en: f64, found: &mut Roots<
     let x = -n.div::<P>(m);
     let error = (en + x.high.abs() * em) / m.high.abs() + NOISE * x.high.abs();
     found.push(x, 1);
-    error <= exp2i(-58) * x.high.abs()
+    error <= LEFT * x.high.abs()
 }
 
 /// The real roots of `n + m x + l x^2`, all coefficients within 2^+-200 of 1 or `m` zero; `None` in doubt.
@@ -265,4 +265,59 @@ pub(in super::super) fn quadratic<P: Product>(n: f64, m: f64, l: f64) -> Option<
     let mut roots = Roots::default();
     found.iter().for_each(|root| roots.insert(root.x.to_f64() + 0.0, root.multiplicity));
     Some(roots)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{are_the_roots, two_factors};
+    use super::*;
+    use crate::kernel::{Task, run};
+    use crate::testing::Random;
+
+    /// A polynomial of which only neighbours are known.
+    struct Neighbour<'a>(&'a [f64; 5], &'a [Double; 5], &'a [f64; 4]);
+
+    impl Task for Neighbour<'_> {
+        type Output = Option<Roots<4>>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Neighbour(whole, c, error) = self;
+            let inverse = 1.0 / whole[4];
+            let [f, g] =
+                split(c[0].high * inverse, c[1].high * inverse, c[2].high * inverse, c[3].high * inverse)?;
+            let second = [whole[4], whole[4] * g.linear, whole[4] * g.constant];
+            refined::<P>(c, error, 0.0, &f, &second, whole)
+        }
+    }
+
+    /// Coefficients that err by as much as is said lead to no wrong answer, and to one where their errors are small.
+    #[test]
+    fn errors_of_the_coefficients_count() {
+        let mut random = Random::new(1);
+        let mut count = [0; 5];
+        for _ in 0..20_000 {
+            let near = random.magnitude(-8.0, -1.0);
+            let (c, _) = two_factors(&mut random, near, 0.0);
+            // So large that the discriminant of a factor may change its sign, or any.
+            let size = if random.once_in(2) {
+                near * near * random.magnitude(-2.0, 1.0)
+            } else {
+                random.magnitude(-26.0, -8.0)
+            };
+            let single = random.below(8) as usize;
+            let error: [f64; 4] =
+                core::array::from_fn(|k| if single > 3 || single == k { size * c[k].abs() } else { 0.0 });
+            let moved: [Double; 5] = core::array::from_fn(|k| {
+                let off = error.get(k).map_or(0.0, |error| error * random.sign() * random.uniform(0.8, 1.0));
+                Double::from(c[k]) + off
+            });
+            if let Some(roots) = run(Neighbour(&c, &moved, &error)) {
+                count[roots.len()] += 1;
+                assert!(are_the_roots(&c, &roots), "{c:?} {error:?}: {roots:?}");
+            } else {
+                count[1] += u32::from(size < 1e-24);
+            }
+        }
+        let [none, left, two, _, four] = count;
+        assert!(none > 2500 && two > 800 && four > 240 && left < 350, "{count:?}");
+    }
 }

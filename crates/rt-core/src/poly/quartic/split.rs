@@ -42,7 +42,8 @@ pub(super) fn split(d: f64, c: f64, b: f64, a: f64) -> Option<[Factor; 2]> {
     let mut w = y - 2.0 / 3.0 * p;
     let mut sum = p + w;
     let mut e = sum * sum - 4.0 * r;
-    if w < 0.0 && e < 0.0 {
+    // w e = q^2: where one is negative so is the other, or it is zero, and only the larger one knows its sign.
+    if w < 0.0 && e * (y.abs() + p.abs()) < -w * (sum * sum + 4.0 * r.abs()) {
         // Two pairs of complex roots, and this split would take the pairs apart: the greatest of the other two
         // roots of the resolvent keeps them.
         y = 0.5 * (sqrt((-3.0 * y * y - 4.0 * m).max(0.0)) - y);

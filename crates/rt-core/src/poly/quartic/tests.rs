@@ -1,8 +1,12 @@
 //! What must not become slow unseen: the first ways, in `f64`, answer nearly all polynomials whose roots are apart.
 
 use super::super::{cubic, quadratic};
-use super::{discs, split};
+use super::split::Factor;
+use super::{discs, factors, split};
+use crate::kernel::counted::counted;
 use crate::kernel::{Product, Task, run};
+use crate::math::exp2i;
+use crate::testing::Random;
 use proptest::prelude::*;
 
 /// Real roots and complex pairs.
@@ -73,4 +77,237 @@ proptest! {
             prop_assert_eq!(run(First(c)), Some(roots.len()), "{:?}", c);
         }
     }
+}
+
+type Found = Option<crate::poly::Roots<4>>;
+
+/// What the discs certify.
+struct Discs<'a>(&'a [f64; 5], &'a [Factor; 2]);
+
+impl Task for Discs<'_> {
+    type Output = Found;
+    fn run<P: Product>(self) -> Found {
+        discs::roots::<P>(self.0, self.1)
+    }
+}
+
+/// What both factors in double-double tell.
+struct Factors<'a>(&'a [f64; 5]);
+
+impl Task for Factors<'_> {
+    type Output = Found;
+    fn run<P: Product>(self) -> Found {
+        factors::roots::<P>(self.0)
+    }
+}
+
+/// Whether these are the roots of the polynomial, simple ones within 0.51 units in the last place: by the careful
+/// solver.
+pub(super) fn are_the_roots(c: &[f64; 5], found: &crate::poly::Roots<4>) -> bool {
+    let truth = super::double(c.map(crate::double::Double::from));
+    truth.len() == found.len()
+        && truth.iter().zip(found.iter()).all(|(truth, root)| {
+            let unit = root.x.abs().next_up() - root.x.abs();
+            (truth.x - root.x).high.abs() <= 0.51 * unit
+        })
+}
+
+/// Four roots or pairs, those that shall be near each other within `near`: and the factors, each off by `off` of its size.
+pub(super) fn two_factors(random: &mut Random, near: f64, off: f64) -> ([f64; 5], [Factor; 2]) {
+    let size = if random.once_in(2) { 1.0 } else { random.magnitude(-1.5, 0.0) };
+    let of = |random: &mut Random, around: f64, size: f64| {
+        let re = around + random.uniform(-1.0, 1.0) * size;
+        let half = size * if random.once_in(3) { near } else { random.uniform(0.0, 1.0) };
+        let square = half * half * random.sign();
+        Factor { linear: -2.0 * re, constant: re * re - square }
+    };
+    let f = of(random, 0.0, 1.0);
+    let beside = of(random, -0.5 * f.linear, near);
+    let g = if random.once_in(2) { beside } else { of(random, 0.0, size) };
+    let lead = if random.once_in(2) { 1.0 } else { random.uniform(1.0, 2.0) };
+    let c = [
+        f.constant * g.constant,
+        f.linear * g.constant + g.linear * f.constant,
+        f.constant + g.constant + f.linear * g.linear,
+        f.linear + g.linear,
+        1.0,
+    ];
+    let mut moved = |f: Factor| Factor {
+        linear: f.linear + off * random.uniform(-1.0, 1.0),
+        constant: f.constant * (1.0 + off * random.uniform(-1.0, 1.0)),
+    };
+    (c.map(|c| c * lead), [moved(f), moved(g)])
+}
+
+/// Whether the factors, multiplied out, are the monic polynomial but for this share of the terms of each coefficient.
+pub(super) fn multiply_back(c: &[f64; 5], f: &[Factor], share: f64) -> bool {
+    let mut product = [1.0, 0.0, 0.0, 0.0, 0.0];
+    let mut size = product;
+    for f in f {
+        let times = |c: &[f64; 5], b: f64, a: f64| -> [f64; 5] {
+            core::array::from_fn(|k| {
+                let at = |i: usize| k.checked_sub(i).map_or(0.0, |k| c[k]);
+                b * at(0) + a * at(1) + at(2)
+            })
+        };
+        product = times(&product, f.constant, f.linear);
+        size = times(&size, f.constant.abs(), f.linear.abs());
+    }
+    (0..5).all(|k| (product[k] - c[k] / c[4]).abs() <= share * size[k])
+}
+
+/// The first guess is what its name says, whatever the roots: two factors, whose product differs by little.
+#[test]
+fn splits_multiply_back() {
+    let mut random = Random::new(5);
+    let mut count = 0;
+    for case in 0..6000 {
+        let (mut c, _) = two_factors(&mut random, 1.0, 0.0);
+        if case % 3 == 0 {
+            // Roots in pairs about zero, or the product of two alike.
+            (c[1], c[3]) = (0.0, 0.0);
+        }
+        if let Some(f) = split::split(c[0] / c[4], c[1] / c[4], c[2] / c[4], c[3] / c[4]) {
+            count += 1;
+            assert!(multiply_back(&c, &f, exp2i(-24)), "{c:?} {f:?}");
+        }
+    }
+    assert!(count > 5990, "{count}");
+}
+
+/// Whatever factors the discs are given, what they certify is true.
+#[test]
+fn discs_certify_only_the_truth() {
+    let mut random = Random::new(3);
+    let mut count = [0; 5];
+    for _ in 0..40_000 {
+        let (near, off) = (random.magnitude(-4.0, 0.0), random.magnitude(-16.0, 0.0));
+        let (c, approximate) = two_factors(&mut random, near, off);
+        if let Some(roots) = run(Discs(&c, &approximate)) {
+            assert!(are_the_roots(&c, &roots), "{c:?} {approximate:?}: {roots:?}");
+            count[roots.len()] += 1;
+        }
+    }
+    assert!([0, 2, 4].iter().all(|&n| count[n] > 3000), "{count:?}");
+}
+
+/// What must not become slow unseen, and must be true: nearly equal roots, wherever they are, are told by both factors
+/// in double-double.
+#[test]
+fn factors_tell_nearly_equal_roots() {
+    let mut random = Random::new(4);
+    let mut count = [0; 3];
+    for case in 0..3000 {
+        let near = random.magnitude(-9.0, -2.0);
+        let (mut c, [f, g]) = two_factors(&mut random, near, 0.0);
+        if case % 3 == 1 {
+            // All near one place, far from zero.
+            let s = random.sign() * random.uniform(2.0, 4.0);
+            let moved = |f: Factor| {
+                [f.constant * near * near - s * near * f.linear + s * s, near * f.linear - 2.0 * s]
+            };
+            let ([b, a], [d, e]) = (moved(f), moved(g));
+            c = [b * d, a * d + e * b, b + d + a * e, a + e, 1.0];
+        } else if case % 3 == 2 {
+            c = [0.0, f.constant * g.linear, f.constant + f.linear * g.linear, f.linear + g.linear, 1.0];
+        }
+        if let Some(roots) = run(Factors(&c)) {
+            count[case % 3] += 1;
+            assert!(are_the_roots(&c, &roots), "{c:?}: {roots:?}");
+        }
+    }
+    assert!(count.iter().all(|&n| n > 990), "{count:?}");
+}
+
+/// What must not become slow unseen: factors off by 1e-8 are as good as any, where roots are apart.
+#[test]
+fn discs_answer_from_afar() {
+    let mut random = Random::new(6);
+    for case in 0..3000 {
+        let mut moved = |x: f64| x * (1.0 + 1e-8 * random.uniform(-1.0, 1.0));
+        let [a, b, c, d] = [-1.5, -0.25, 0.5, 2.0].map(|x| x + 0.1 * libm::sin(f64::from(case) * (x + 3.0)));
+        let real = |a: f64, b: f64| [a * b, -(a + b)];
+        let pair = |re: f64, im: f64| [re * re + im * im, -2.0 * re];
+        let (f, g) = match case % 4 {
+            0 => (real(a, c), real(b, d)),
+            1 => (real(a, b), pair(c, d)),
+            2 => (pair(a, 0.5 * d), real(c, d)),
+            _ => (pair(a, d), pair(c, 1.0)),
+        };
+        let whole = [f[0] * g[0], f[1] * g[0] + g[1] * f[0], f[0] + g[0] + f[1] * g[1], f[1] + g[1], 1.0];
+        let factors =
+            [f, g].map(|[constant, linear]| Factor { constant: moved(constant), linear: moved(linear) });
+        let roots = run(Discs(&whole, &factors)).expect("roots that are apart");
+        assert!(are_the_roots(&whole, &roots), "{whole:?} {roots:?}");
+    }
+}
+
+struct All([f64; 5]);
+
+impl Task for All {
+    type Output = usize;
+    fn run<P: Product>(self) -> usize {
+        super::all_roots::<P>(&self.0).len()
+    }
+}
+
+/// What must not become slow unseen: how many exact products a quartic takes by its kind, in the mean, as measured and no
+/// more than a fiftieth above.
+#[test]
+fn products_a_quartic() {
+    let mut random = Random::new(7);
+    let measured = [16.0, 43.9, 225.0, 33.4, 41.2, 17.2, 138.1, 488.5];
+    let mut found = [0.0; 8];
+    for case in 0..8000 {
+        let kind = case % 8;
+        let near = random.magnitude(-9.0, -2.0);
+        let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
+        let [a, b, c, d] = [root(0), root(1), root(2), root(3)];
+        let tiny = random.magnitude(-12.0, -6.0);
+        let list: [f64; 4] = match kind {
+            // Apart; two, three or four near each other; two and two; of very different size; a double and a triple root.
+            0 => [a, b, c, d],
+            1 => [a, a + near, c, d],
+            2 => [a, a + near, a - 2.0 * near, d],
+            3 => [a, a + near, a - 2.0 * near, a + 4.0 * near],
+            4 => [a, a + near, c, c - near],
+            5 => [a, b * tiny, c * tiny * tiny, d],
+            6 => [0.5, 0.5, c, d],
+            _ => [0.25, 0.25, 0.25, d],
+        };
+        let (_, products) = counted(All(expanded(&list, &[], 1.0)));
+        found[kind] += products as f64 / 1000.0;
+    }
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
+}
+
+/// The same for the careful solver alone.
+#[test]
+fn products_of_the_careful_solver() {
+    struct Careful([f64; 5]);
+    impl Task for Careful {
+        type Output = usize;
+        fn run<P: Product>(self) -> usize {
+            crate::poly::bracket::solve::<P, 4>(&self.0.map(crate::double::Double::from)).len()
+        }
+    }
+    let mut random = Random::new(8);
+    let measured = [403.4, 359.5, 352.1, 381.7];
+    let mut found = [0.0; 4];
+    for case in 0..2000 {
+        let kind = case % 4;
+        let near = random.magnitude(-9.0, -2.0);
+        let tiny = random.magnitude(-40.0, -3.0);
+        let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
+        let [a, b, c, d] = [root(0), root(1), root(2), root(3)];
+        let list = match kind {
+            0 => [a, b, c, d],
+            1 => [a, a + near, c, d],
+            2 => [a, a + near, a - 2.0 * near, d],
+            _ => [a, b * tiny, c * tiny * tiny, d],
+        };
+        let (_, products) = counted(Careful(expanded(&list, &[], 1.0)));
+        found[kind] += products as f64 / 500.0;
+    }
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
 }

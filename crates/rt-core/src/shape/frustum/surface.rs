@@ -247,4 +247,130 @@ mod tests {
             "{count:?}"
         );
     }
+
+    /// What must not become slow unseen: `f64` tells nearly all plain crossings with the side, in every direction, also next
+    /// to the axis and along the side; and tells them as double-double does.
+    #[test]
+    fn chords_in_every_direction() {
+        use crate::scaled::admit;
+        use crate::testing::Random;
+        let mut random = Random::new(1);
+        let mut count = [[0_u32; 2]; 4];
+        for case in 0..8000 {
+            let kind = case % 4;
+            let radii = [0.5, if kind == 0 { 0.5 } else { random.uniform(0.0, 0.45) }];
+            let top = random.direction();
+            let frustum = Frustum::new(DVec3::ZERO, radii, top, ["a", "b"], true).unwrap();
+            let axis = frustum.axis.high();
+            let target = top * random.uniform(0.1, 0.9) + random.in_cube() * 0.1;
+            let direction = match kind {
+                // Next to the axis, or along the side.
+                2 => axis + random.in_cube() * 0.2,
+                3 => {
+                    let out = axis.cross(random.direction()).normalize();
+                    axis + out * (radii[1] - radii[0]) + random.in_cube() * 0.05
+                }
+                _ => random.direction(),
+            };
+            let ray = Ray::new(target - direction * 3.0, direction);
+            let rough = if kind == 0 { frustum.rough::<false>(&ray) } else { frustum.rough::<true>(&ray) };
+            count[kind][usize::from(rough.is_some())] += 1;
+            let found = frustum.both(rough, &ray, Interval::LINE);
+            let (scaled, line) = frustum.line(&ray).unwrap();
+            let exact = line.span(true).map(|found| {
+                admit(Interval::LINE, scaled.unscale(line.shift + found?.at), found?.part, found?.root)
+            });
+            for (found, exact) in found.into_iter().zip(exact) {
+                assert_eq!(found.is_some(), exact.is_some(), "{frustum:?} {ray:?}");
+                if let (Some(found), Some(exact)) = (found, exact) {
+                    assert!((found.t() - exact.t()).abs() < 1e-11, "{frustum:?} {ray:?}");
+                    assert_eq!(found.part(), exact.part());
+                }
+            }
+        }
+        assert!(count.iter().all(|&[left, _]| left < 20), "{count:?}");
+    }
+
+    /// What `f64` says of lines that nearly touch the side is true, for steep and flat cones, from near and from afar.
+    #[test]
+    fn chords_of_grazing_lines() {
+        use super::super::rough::Span;
+        use crate::scaled::admit;
+        use crate::testing::Random;
+        let mut random = Random::new(2);
+        let mut count = [0_u32; 3];
+        for case in 0..20_000 {
+            let height = random.magnitude(-3.0, 1.0);
+            let radii = [1.0, if case % 4 == 0 { 1.0 } else { random.uniform(0.0, 0.9) }];
+            let axis = random.direction();
+            let frustum = Frustum::new(random.in_cube(), radii, axis * height, ["a", "b"], true);
+            let Ok(frustum) = frustum else { continue };
+            // A point of the side, and a line in its tangent plane, off by a little.
+            let axis = (frustum.top - frustum.base).normalize();
+            let out = axis.cross(random.direction()).normalize();
+            let v = random.uniform(0.1, 0.9);
+            let length = (frustum.top - frustum.base).length();
+            let radius = radii[0] + (radii[1] - radii[0]) * v;
+            let normal = (out * length + axis * (radii[0] - radii[1])).normalize();
+            let tangent = normal.cross(random.direction()).normalize();
+            let place = frustum.base + axis * (v * length) + out * radius;
+            let place = place + normal * (random.sign() * random.magnitude(-17.0, -6.0) * length.min(1.0));
+            let ray = Ray::new(place - tangent * random.magnitude(-1.0, 4.0), tangent);
+            let rough =
+                if case % 4 == 0 { frustum.rough::<false>(&ray) } else { frustum.rough::<true>(&ray) };
+            let (scaled, line) = frustum.line(&ray).unwrap();
+            let exact = line.span(true).map(|found| {
+                admit(Interval::LINE, scaled.unscale(line.shift + found?.at), found?.part, found?.root)
+            });
+            match rough {
+                None => count[0] += 1,
+                Some(Span::Miss) => {
+                    count[1] += 1;
+                    assert_eq!(exact, [None; 2], "{frustum:?} {ray:?}");
+                }
+                Some(Span::Crossings(found)) => {
+                    count[2] += 1;
+                    for (found, exact) in found.into_iter().zip(exact) {
+                        let off = exact.map_or(f64::INFINITY, |exact| (exact.t() - found.t).abs());
+                        assert!(off <= found.margin, "{frustum:?} {ray:?} {found:?} {exact:?}");
+                    }
+                }
+            }
+        }
+        assert!(count.iter().all(|&count| count > 2000), "{count:?}");
+    }
+
+    /// A hit that rounding invented, of a line that passes beside the side: the record is of the place on the surface next
+    /// to the line.
+    #[test]
+    fn records_beside_the_line_are_on_the_surface() {
+        let mut random = crate::testing::Random::new(3);
+        let mut count = 0;
+        for case in 0..2000 {
+            let radii = [0.5, if case % 2 == 0 { 0.5 } else { random.uniform(0.2, 0.45) }];
+            let frustum = Frustum::new(DVec3::ZERO, radii, random.direction(), ["a", "b"], true).unwrap();
+            let axis = frustum.axis.high();
+            let out = axis.cross(random.direction()).normalize();
+            let normal = (out + axis * (radii[0] - radii[1])).normalize();
+            let v = random.uniform(0.2, 0.8);
+            let off = random.magnitude(-14.0, -4.0);
+            let place = axis * v + out * (radii[0] + (radii[1] - radii[0]) * v);
+            // Across the axis: then the line passes outside everywhere.
+            let tangent = axis.cross(normal).normalize();
+            let ray = Ray::new(place + normal * off - tangent * 2.0, tangent);
+            let scaled = ScaledRay::new(&ray, frustum.base, frustum.unit).unwrap();
+            let hit = crate::Hit::inside(2.0, super::super::SIDE, 0);
+            let found = kernel::run(FindSurface { frustum: &frustum, ray: &scaled, hit });
+            let local = found.local.high() * exp2i(frustum.unit);
+            let z = local.dot(axis);
+            let rho = (local - axis * z).length();
+            assert!(
+                (rho - (radii[0] + (radii[1] - radii[0]) * z)).abs() < 1e-14,
+                "{frustum:?} {ray:?} {local}"
+            );
+            assert!((local - place).length() < 2.0 * off + 1e-7, "{frustum:?} {ray:?} {local} {place}");
+            count += 1;
+        }
+        assert!(count == 2000);
+    }
 }

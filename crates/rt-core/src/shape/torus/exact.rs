@@ -178,3 +178,50 @@ pub(super) fn left(line: &Line, x: Double, slope: f64, step: f64) -> f64 {
     let bend = line.bend(x.high).abs() + step * (2.0 * x.high.abs() + 0.75 * step);
     (step * step * bend / slope).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ray;
+    use crate::kernel::{Task, run};
+    use crate::testing::Random;
+
+    /// Newton's step from beside a crossing: what it is said to leave and what it leaves, and the share of the step in
+    /// the distance to an inflection.
+    struct Step<'a>(&'a Torus, &'a crate::scaled::ScaledRay, f64);
+
+    impl Task for Step<'_> {
+        type Output = Option<[f64; 3]>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Step(torus, ray, off) = self;
+            let line = Line::of::<P>(torus, ray);
+            let &zero = crossings::<P>(torus, &line).as_slice().first()?;
+            let x = zero + off;
+            let (value, slope) = line.value::<P>(x);
+            let step = value.div::<P>(slope).scale_exact(0.25);
+            let next = x - step;
+            let share = (step.high * line.bend(x.high) / slope.high).abs();
+            Some([left(&line, next, slope.high, step.high), (next - zero).high.abs(), share])
+        }
+    }
+
+    #[test]
+    fn what_a_step_leaves() {
+        let mut random = Random::new(1);
+        let mut count = 0;
+        for _ in 0..4000 {
+            let torus =
+                Torus::new(random.in_cube(), random.direction(), 1.0, random.uniform(0.05, 0.9)).unwrap();
+            let target = torus.center + random.in_cube();
+            let along = random.direction();
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let off = random.magnitude(-10.0, -3.0) * random.sign();
+            let Some([said, there, share]) = run(Step(&torus, &ray, off)) else { continue };
+            if share < 0.01 {
+                count += 1;
+                assert!((said / there - 1.0).abs() < 0.03, "{torus:?} {ray:?} {off}: {said} {there}");
+            }
+        }
+        assert!(count > 1000, "{count}");
+    }
+}

@@ -421,3 +421,130 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     }
     y
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Ray;
+    use crate::kernel::run;
+    use crate::testing::Random;
+
+    /// What the rough line says of a place, and the precise one.
+    struct Both<'a>(&'a Torus, &'a ScaledRay, f64);
+
+    impl Task for Both<'_> {
+        type Output = Option<(RoughLine, Line, [f64; 3])>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Both(torus, ray, x) = self;
+            let line = Line::of::<P>(torus, ray);
+            let at = |x: f64| line.value::<P>(Double::from(x));
+            // (f(x + h) - 2 f(x) + f(x - h)) / h^2 is f'' + 2 h^2.
+            let h = exp2i(-6);
+            let second =
+                ((at(x + h).0 + at(x - h).0) - at(x).0.scale_exact(2.0)).to_f64() / (h * h) - 2.0 * h * h;
+            Some((RoughLine::new::<P>(torus, ray)?, line, [at(x).0.to_f64(), at(x).1.to_f64(), second]))
+        }
+    }
+
+    /// Values are within their errors, which are no more than two hundred roundings; slopes and curvatures are those of the
+    /// same function.
+    #[test]
+    fn rough_and_precise_lines_agree() {
+        let mut random = Random::new(1);
+        let mut count = 0;
+        for _ in 0..4000 {
+            let torus =
+                Torus::new(random.in_cube(), random.direction(), 1.0, random.uniform(0.05, 1.5)).unwrap();
+            let target = torus.center + random.in_cube();
+            let along = random.direction();
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along));
+            let (ray, s) = (ray.unwrap(), torus.reach);
+            let x = random.uniform(-1.0, 1.0) * s;
+            let Some((rough, line, [value, slope, second])) = run(Both(&torus, &ray, x)) else { continue };
+            count += 1;
+            let at = rough.value(&torus, x);
+            assert!((at.value - value).abs() <= at.error, "{torus:?} {ray:?} {x}");
+            assert!(at.error < 1000.0 * U * s * s * s * s, "{torus:?} {ray:?} {x}: {}", at.error);
+            assert!((at.slope - slope).abs() < 1e-13 * s * s * s);
+            assert!((rough.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
+            assert!((line.slope_at(x) - slope).abs() < 1e-13 * s * s * s, "{torus:?} {ray:?} {x}");
+            assert!((line.bend(x) - 0.125 * second).abs() < 1e-12 * s * s, "{torus:?} {ray:?} {x}");
+        }
+        assert!(count > 1000, "{count}");
+    }
+
+    struct Sharp<'a>(&'a Torus, &'a ScaledRay, f64);
+
+    impl Task for Sharp<'_> {
+        type Output = Option<(Node, f64, f64)>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Sharp(torus, ray, off) = self;
+            let rough = RoughLine::new::<P>(torus, ray)?;
+            let line = Line::of::<P>(torus, ray);
+            let node = sharpened::<P>(torus, &line, outermost(rough.p, rough.q) + off)?;
+            let at = Double::sum(node.x, node.low);
+            let (value, slope) = line.value::<P>(at);
+            Some((node, value.to_f64(), slope.to_f64()))
+        }
+    }
+
+    /// A sharp node is where the slope vanishes, to twice the precision of where it was looked for.
+    #[test]
+    fn sharp_nodes_are_extrema() {
+        let mut random = Random::new(2);
+        let mut count = 0;
+        for _ in 0..2000 {
+            let torus =
+                Torus::new(random.in_cube(), random.direction(), 1.0, random.uniform(0.1, 0.9)).unwrap();
+            let target = torus.center + random.in_cube();
+            let along = random.direction();
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let off = random.uniform(-1.0, 1.0) * exp2i(-36);
+            let Some((node, value, slope)) = run(Sharp(&torus, &ray, off)) else { continue };
+            count += 1;
+            let s = torus.reach;
+            assert!(slope.abs() <= exp2i(-55) * s * s * s, "{torus:?} {ray:?} {slope:e}");
+            assert!((value - node.value).abs() <= exp2i(-90) * s * s * s * s, "{value:e} {node:?}");
+            assert!(node.inside == (node.value < 0.0) && node.sharp);
+        }
+        assert!(count > 1000, "{count}");
+    }
+
+    /// Lines through the hole or past the rim, within the slab of the tube, are told at once; what is told so is true.
+    #[test]
+    fn lines_that_pass_the_tube() {
+        struct Passes<'a>(&'a Torus, &'a ScaledRay);
+        impl Task for Passes<'_> {
+            type Output = Option<(bool, usize)>;
+            fn run<P: Product>(self) -> Self::Output {
+                let rough = RoughLine::new::<P>(self.0, self.1)?;
+                let line = Line::of::<P>(self.0, self.1);
+                Some((rough.passes_the_tube(self.0), exact::crossings::<P>(self.0, &line).as_slice().len()))
+            }
+        }
+        let mut random = Random::new(3);
+        let mut count = [0; 3];
+        for case in 0..4000 {
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, 0.25).unwrap();
+            let [x, y, z] = torus.frame.map(|axis| axis.high());
+            // At a distance from the axis: within the hole, next to its edge, in the tube, or any.
+            let rho = match case % 4 {
+                0 => random.uniform(0.0, 0.5),
+                1 => 0.75 + random.sign() * random.magnitude(-17.0, -2.0),
+                2 => 1.25 + random.sign() * random.magnitude(-17.0, -2.0),
+                _ => random.uniform(0.0, 1.25),
+            };
+            let turn = random.uniform(0.0, core::f64::consts::TAU);
+            let place = torus.center + (x * libm::cos(turn) + y * libm::sin(turn)) * rho;
+            let along = z + if case % 4 == 0 { random.in_cube() * 0.3 } else { DVec3::ZERO };
+            let ray = torus.scaled(&Ray::new(place - along * 3.0, along)).unwrap();
+            let Some((passes, crossings)) = run(Passes(&torus, &ray)) else { continue };
+            assert!(!passes || crossings == 0, "{torus:?} {ray:?}");
+            match case % 4 {
+                0 => count[usize::from(passes)] += 1,
+                _ => count[2] += u32::from(passes),
+            }
+        }
+        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 500, "{count:?}");
+    }
+}

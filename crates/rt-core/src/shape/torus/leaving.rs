@@ -307,3 +307,73 @@ fn refine<P: Product>(cubic: &Cubic, low: &Node, high: &Node) -> Double {
     }
     y
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::run;
+    use crate::testing::Random;
+
+    struct Value<'a>(&'a Cubic, f64);
+
+    impl Task for Value<'_> {
+        type Output = (f64, f64);
+        fn run<P: Product>(self) -> (f64, f64) {
+            let (value, slope) = self.0.value::<P>(Double::from(self.1));
+            (value.to_f64(), slope.to_f64())
+        }
+    }
+
+    #[test]
+    fn rough_values_are_those_of_the_cubic() {
+        let mut random = Random::new(1);
+        for _ in 0..1000 {
+            let c = [(); 3].map(|()| random.uniform(-4.0, 4.0));
+            let [second, first, constant] = c.map(Double::from);
+            let cubic = Cubic { second, first, constant };
+            let [second, first, constant] = c;
+            let y = random.uniform(-4.0, 4.0);
+            let ((a, b), (value, slope)) = (cubic.rough(y), run(Value(&cubic, y)));
+            assert!((a - value).abs() < 1e-13 && (b - slope).abs() < 1e-13, "{y}");
+            assert!((value - (((y + second) * y + first) * y + constant)).abs() < 1e-13);
+            assert!((slope - ((3.0 * y + 2.0 * second) * y + first)).abs() < 1e-13);
+        }
+    }
+
+    struct Extrema<'a>(&'a Cubic);
+
+    impl Task for Extrema<'_> {
+        type Output = Option<[(Double, f64); 2]>;
+        fn run<P: Product>(self) -> Self::Output {
+            Some(self.0.extrema::<P>()?.map(|y| (y, self.0.value::<P>(y).1.to_f64())))
+        }
+    }
+
+    /// Extrema are where the slope vanishes, to twice the precision, also next to zero.
+    #[test]
+    fn extrema_of_a_cubic() {
+        let mut random = Random::new(2);
+        let mut count = 0;
+        for _ in 0..2000 {
+            let second = random.uniform(-4.0, 4.0);
+            let first = random.sign() * random.magnitude(-20.0, 0.5);
+            let cubic = Cubic {
+                second: Double::from(second),
+                first: Double::from(first),
+                constant: Double::from(random.uniform(-1.0, 1.0)),
+            };
+            let Some([(x, at_x), (y, at_y)]) = run(Extrema(&cubic)) else {
+                assert!(second * second <= 3.0 * first);
+                continue;
+            };
+            count += 1;
+            assert!(x.high < y.high && (x.high * y.high).is_sign_negative() == first.is_sign_negative());
+            for (x, slope) in [(x, at_x), (y, at_y)] {
+                // Relative to the terms of the slope, which is why a small one must be known to all its digits.
+                let size = 3.0 * x.high * x.high + 2.0 * (second * x.high).abs() + first.abs();
+                assert!(slope.abs() <= exp2i(-90) * size, "{second} {first}: {x:?} {slope:e} {size}");
+            }
+        }
+        assert!(count > 1000, "{count}");
+    }
+}

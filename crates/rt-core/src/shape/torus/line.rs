@@ -216,3 +216,42 @@ impl Line {
 
 /// From beyond this many sizes one step leaves more than 2^-10 sizes to go, and its square would show.
 const FAR: f64 = crate::math::exp2i(40);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{Task, run};
+    use crate::testing::Random;
+
+    struct Near<'a>(&'a Torus, DVec3, DVec3, f64);
+
+    impl Task for Near<'_> {
+        type Output = Option<(Core, f64)>;
+        fn run<P: Product>(self) -> Self::Output {
+            let Near(torus, origin, direction, x) = self;
+            let core = Line::new::<P>(torus, DoubleVector::from(origin), direction).core?;
+            Some((core, core.rho_squared::<P>(Double::from(x)).high))
+        }
+    }
+
+    /// The sizes of the terms of `f` are at least as large together as the terms: `K^2` and `4 R^2 rho^2`, each of which is
+    /// a sum itself.
+    #[test]
+    fn a_magnitude_is_that_of_all_terms() {
+        let mut random = Random::new(1);
+        let mut count = 0;
+        for _ in 0..2000 {
+            let torus = Torus::new(DVec3::ZERO, random.direction(), 1.0, random.uniform(0.5, 1.5)).unwrap();
+            let x = random.uniform(-0.2, 0.2);
+            let near = Near(&torus, random.in_cube() * random.magnitude(-6.0, 0.0), random.direction(), x);
+            let Some((core, rho_squared)) = run(near) else { continue };
+            count += 1;
+            let (k, twice) = (core.k.high + x * x, torus.twice.high);
+            let least = k * k + 2.0 * twice * 2.0 * rho_squared;
+            let most = 8.0 * torus.reach * torus.reach * torus.reach * torus.reach;
+            let magnitude = core.magnitude(x, twice);
+            assert!((0.999 * least..most).contains(&magnitude), "{torus:?} {x}: {least} {magnitude} {most}");
+        }
+        assert!(count > 500, "{count}");
+    }
+}

@@ -184,3 +184,32 @@ impl Torus {
         rounding + exp2i(self.scale) * if along < most { along } else { most }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of the crossings in the same sense the nearest, not too far; of equally near ones that of the index.
+    #[test]
+    fn which_crossing_a_hit_names() {
+        let mut crossings = Crossings::NONE;
+        [-3.0, -1.0, 1.0, 2.5].into_iter().for_each(|x| crossings.push(Double::from(x)));
+        for (place, too_far, root, expected) in [
+            (-2.9, 1.0, 0, Some(-3.0)),
+            (1.1, 1.0, 2, Some(1.0)),
+            (1.1, 9.0, 0, Some(1.0)),
+            (-2.0, 9.0, 2, Some(-3.0)),
+            (1.1, 9.0, 1, Some(2.5)),
+            (-0.9, 1.0, 3, Some(-1.0)),
+            (-0.9, 1.0, 0, None),
+            (-1.0, 2.0, 0, Some(-3.0)),
+            (-1.0, 2.0, 2, Some(1.0)),
+            (0.75, 2.0, 1, Some(-1.0)),
+            (0.75, 2.0, 3, Some(2.5)),
+            (9.0, 1.0, 3, None),
+        ] {
+            let found = chosen(&crossings, place, too_far, root).map(|x| x.high);
+            assert_eq!(found, expected, "{place} {too_far} {root}");
+        }
+    }
+}

@@ -444,3 +444,55 @@ fn a_crossing_beyond_an_inflection() {
         assert!(off(&torus, surface.local) <= 2.0 * f64::EPSILON);
     }
 }
+
+/// What must not become slow unseen: how many exact products the steps of a torus take, in the mean, as measured and no more
+/// than a fiftieth above.
+#[test]
+fn products_a_torus() {
+    use super::exact;
+    use super::line::Line;
+    use super::record::Thorough;
+    use crate::kernel::counted::counted;
+    use crate::kernel::{Product, Task};
+    use crate::scaled::ScaledRay;
+    struct Exactly<'a>(&'a Torus, &'a ScaledRay);
+    impl Task for Exactly<'_> {
+        type Output = usize;
+        fn run<P: Product>(self) -> usize {
+            let line = Line::of::<P>(self.0, self.1);
+            exact::crossings::<P>(self.0, &line).as_slice().len()
+        }
+    }
+    let mut random = crate::testing::Random::new(1);
+    let mut sum = [[0.0; 2]; 10];
+    let mut add = |place: usize, products: u64| {
+        sum[place][0] += products as f64;
+        sum[place][1] += 1.0;
+    };
+    for case in 0..4000 {
+        let grazing = case % 2;
+        let minor = if case % 8 < 6 { random.uniform(0.05, 0.5) } else { random.uniform(0.9, 1.5) };
+        let torus = Torus::new(random.in_cube(), random.direction(), 1.0, minor).unwrap();
+        let (point, normal) = place(&torus, random.uniform(0.0, 1.0), random.uniform(0.0, 1.0));
+        let mut direction = random.direction();
+        let mut target = torus.center + point;
+        if grazing == 1 {
+            direction = (direction - normal * direction.dot(normal)).normalize();
+            target -= normal * random.magnitude(-9.0, -2.0);
+        }
+        let ray = Ray::new(target - direction * random.uniform(0.5, 4.0), direction);
+        let scaled = torus.scaled(&ray).unwrap();
+        for all in [false, true] {
+            let filter = Filter { torus: &torus, ray: &scaled, within: Interval::FORWARD, all };
+            add(5 * grazing + usize::from(all), counted(filter).1);
+        }
+        add(5 * grazing + 2, counted(Exactly(&torus, &scaled)).1);
+        let Some(hit) = torus.hit(&ray, Interval::FORWARD) else { continue };
+        add(5 * grazing + 3, counted(Near { torus: &torus, ray: &scaled, hit }).1);
+        add(5 * grazing + 4, counted(Thorough(Near { torus: &torus, ray: &scaled, hit })).1);
+    }
+    // One hit and all, by the filter; the exact crossings; the record, near and thorough. Then the same of grazing rays.
+    let measured = [5.08, 5.08, 157.9, 51.7, 171.8, 34.2, 34.2, 139.0, 50.0, 152.8];
+    let found = sum.map(|[products, count]| products / count);
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
+}
