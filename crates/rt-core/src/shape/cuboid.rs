@@ -10,7 +10,7 @@ use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
-use crate::math::exp2i;
+use crate::math::{exp2i, exponent};
 use crate::scaled::{checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use core::cmp::Ordering;
@@ -334,23 +334,57 @@ struct Crossing {
     face: u32,
 }
 
-/// A parameter as a fraction with a positive denominator.
+/// A parameter as a fraction: `2^power * numerator / denominator`, the denominator positive. Both are 0 or of a size in
+/// `[1, 2)`, so that no product of theirs leaves the range of numbers.
 #[derive(Clone, Copy, Debug)]
 struct Fraction {
     numerator: Double,
     denominator: Double,
+    power: i32,
     face: u32,
 }
 
 impl Fraction {
+    /// `2^power * numerator / denominator`.
+    #[inline(always)]
+    fn new(numerator: Double, denominator: Double, power: i32, face: u32) -> Self {
+        let (numerator, over) = normalized(numerator);
+        let (denominator, under) = normalized(denominator);
+        Fraction { numerator, denominator, power: power + over - under, face }
+    }
+
     /// The order of two fractions, exactly.
     #[inline(always)]
     fn order<P: Product>(&self, other: &Fraction) -> Ordering {
+        let (a, b) = (self.numerator.high, other.numerator.high);
+        let sign = |x: f64| (x > 0.0) as i32 - (x < 0.0) as i32;
+        if a == 0.0 || sign(a) != sign(b) {
+            return sign(a).cmp(&sign(b));
+        }
+        // Quotients of numbers in [1, 2) differ by less than a factor of 4.
+        let lead = self.power - other.power;
+        if lead.abs() > 2 {
+            return if a > 0.0 { lead.cmp(&0) } else { 0.cmp(&lead) };
+        }
         let mut difference = Expansion::ZERO;
-        difference.add_double_product::<P>(self.numerator, other.denominator);
+        difference.add_double_product::<P>(self.numerator.scale_exact(exp2i(lead)), other.denominator);
         difference.add_double_product::<P>(-other.numerator, self.denominator);
         difference.sign().cmp(&0)
     }
+}
+
+/// The number divided by a power of two that leaves a size in `[1, 2)`, and which; zero as it is.
+#[inline(always)]
+fn normalized(x: Double) -> (Double, i32) {
+    // Twice, since a subnormal number shows no exponent; 2^52 makes it a normal one.
+    let by = |x: Double, k: i32| Double { high: times_power(x.high, k), low: times_power(x.low, k) };
+    let lift = if exponent(x.high) < -1022 { 52 } else { 0 };
+    let lifted = by(x, lift);
+    if lifted.high == 0.0 {
+        return (x, 0);
+    }
+    let power = exponent(lifted.high);
+    (by(lifted, -power), power - lift)
 }
 
 /// Where the line enters and leaves the box.
@@ -363,31 +397,27 @@ impl Task for Span<'_> {
     type Output = Option<[Crossing; 2]>;
     #[inline(always)]
     fn run<P: Product>(self) -> Self::Output {
-        let (direction, direction_power) = flat::prescaled(self.ray.direction);
         let Cuboid { min, max, turn } = self.cuboid;
-        let (o, lengths) = (self.ray.origin, *max - *min);
-        let power = flat::power_of(
-            (self.cuboid.corner() - o).abs().max((*max - o).abs() * turn.is_none() as u8 as f64).max(lengths),
-        );
+        let Ray { origin: o, direction: d } = *self.ray;
+        // The axes of a turned box mix the components, in units of the largest ones.
+        let (direction, direction_power) = flat::prescaled(d);
+        let power = flat::power_of((self.cuboid.corner() - o).abs().max(*max - *min));
         let scale = exp2i(-power);
         let (mut near, mut far): (Option<Fraction>, Option<Fraction>) = (None, None);
         for i in 0..3 {
-            let (low, high, along) = match turn {
-                None => (
-                    Double::difference(min[i], o[i]).scale_exact(scale),
-                    Double::difference(max[i], o[i]).scale_exact(scale),
-                    Double::from(direction[i]),
-                ),
-                Some(turn) => turned_slab::<P>(turn, i, max[i], o, direction, scale),
+            let (low, high, along, power) = match turn {
+                None => {
+                    let ends = (Double::difference(min[i], o[i]), Double::difference(max[i], o[i]));
+                    (ends.0, ends.1, Double::from(d[i]), 0)
+                }
+                Some(turn) => {
+                    let (low, high, along) = turned_slab::<P>(turn, i, max[i], o, direction, scale);
+                    (low, high, along, power - direction_power)
+                }
             };
             let sign = along.high;
             if sign == 0.0 {
-                // Along the world's axes without the scale, in which a small difference may vanish.
-                let beside = match turn {
-                    None => o[i] < min[i] || o[i] > max[i],
-                    Some(_) => low.high > 0.0 || high.high < 0.0,
-                };
-                if beside {
+                if low.high > 0.0 || high.high < 0.0 {
                     return None;
                 }
                 continue;
@@ -395,8 +425,8 @@ impl Task for Span<'_> {
             let (first, second, denominator) =
                 if sign > 0.0 { (low, high, along) } else { (-high, -low, -along) };
             let back = (sign < 0.0) as u32;
-            let entry = Fraction { numerator: first, denominator, face: 2 * i as u32 + back };
-            let exit = Fraction { numerator: second, denominator, face: 2 * i as u32 + 1 - back };
+            let entry = Fraction::new(first, denominator, power, 2 * i as u32 + back);
+            let exit = Fraction::new(second, denominator, power, 2 * i as u32 + 1 - back);
             if near.is_none_or(|near| entry.order::<P>(&near).is_gt()) {
                 near = Some(entry);
             }
@@ -413,7 +443,7 @@ impl Task for Span<'_> {
             _ => return None,
         }
         let crossing = |f: Fraction| Crossing {
-            t: times_power(f.numerator.div::<P>(f.denominator).to_f64(), power - direction_power),
+            t: times_power(f.numerator.div::<P>(f.denominator).to_f64(), f.power),
             face: f.face,
         };
         Some([crossing(near), crossing(far)])
@@ -743,6 +773,19 @@ mod tests {
         assert_eq!((exit.t(), exit.part()), (1.0, 5));
         let outward = unit().surface(&ray, hit).departure(0, hit, Side::Outside);
         assert_eq!(unit().hit_leaving(&start, within, &outward), None);
+    }
+
+    #[test]
+    fn passed_by_at_any_speed() {
+        // Beside the box in y, moving along z by 2^1022 a unit of the parameter.
+        let cuboid =
+            Cuboid::new([-30.75, 73.9921875, 58.0234375], [30.24999487400055, 84.19921875, 127.8515625])
+                .unwrap();
+        let ray = Ray::new(
+            [-23.000000000002927, 105.609375, -4.6072862477343016e36],
+            [-5.0000001192092896, 74.92578125, 9.205637315716674e307],
+        );
+        assert_eq!(faces(&cuboid, &ray), []);
     }
 
     #[test]
