@@ -435,3 +435,29 @@ fn any_bits() {
         }
     }
 }
+
+/// A packet whose rays all end near the camera but one: that one goes on, whichever it is.
+#[test]
+fn one_ray_of_a_packet_goes_on() {
+    const RAYS: usize = 32;
+    let ball = |i: usize, x: f64, z: f64| Sphere::new([x * i as f64, 0.0, z], 0.04).unwrap();
+    // Far away and beside: there are enough shapes for a tree.
+    let others = || (0..RAYS).map(|i| ball(i, 0.1, -20.0)).chain((0..RAYS).map(|i| ball(i, 0.1, 20.0)));
+    let rays: Vec<Ray> = (0..RAYS)
+        .map(|i| Ray::new([0.1 * i as f64, 0.0, 0.0], [0.0, 1e-4 * i as f64 / 64.0, -1.0]))
+        .collect();
+    let within = vec![Interval::FORWARD; RAYS];
+    for one in 0..RAYS {
+        let mut builder = Geometry::builder();
+        for shape in (0..RAYS).filter(|&i| i != one).map(|i| ball(i, 0.1, -10.0)).chain(others()) {
+            builder.push(shape);
+        }
+        let geometry = builder.build();
+        let mut found = vec![None; RAYS];
+        geometry.nearest_many(&rays, &within, &mut found);
+        for (i, found) in found.iter().enumerate() {
+            let t = found.expect("each ray meets a ball").hit.t();
+            assert!((t > 15.0) == (i == one), "ray {i} without the ball of {one}: {t}");
+        }
+    }
+}

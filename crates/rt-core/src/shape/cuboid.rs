@@ -776,6 +776,27 @@ mod tests {
     }
 
     #[test]
+    fn exactly_and_plainly_the_same_faces() {
+        let mut random = crate::testing::Random::new(7);
+        let turned = Similarity::IDENTITY.rotated(DVec3::ONE, 40.0).unwrap();
+        let mut crossed = 0;
+        for case in 0..2000 {
+            let (a, b) = (random.in_cube(), random.in_cube());
+            let cuboid = Cuboid::new(a.min(b), a.max(b)).unwrap();
+            let cuboid = if case % 2 == 0 { cuboid } else { cuboid.transformed(&turned).unwrap() };
+            let origin = random.in_cube() * 2.0;
+            let aim = (a + b) * 0.5 + random.in_cube() * 0.3;
+            let ray = Ray::new(origin, (aim - origin) * random.magnitude(-300.0, 300.0));
+            let exact = cuboid.span_exactly(&ray);
+            let exact: Vec<_> = exact.iter().flatten().map(|crossing| crossing.face).collect();
+            let plain: Vec<_> = faces(&cuboid, &ray).iter().map(|&(_, face)| face).collect();
+            assert_eq!(exact, plain, "{cuboid:?} {ray:?}");
+            crossed += plain.len();
+        }
+        assert!(crossed > 1000, "{crossed}");
+    }
+
+    #[test]
     fn passed_by_at_any_speed() {
         // Beside the box in y, moving along z by 2^1022 a unit of the parameter.
         let cuboid =
