@@ -347,7 +347,8 @@ mod tests {
         let listed = |roots: &[crate::poly::Root], k: i32| {
             roots.iter().map(|root| (root.x * exp2i(k), root.multiplicity)).collect::<alloc::vec::Vec<_>>()
         };
-        for case in 0..4000 {
+        let mut answered = 0;
+        for _ in 0..4000 {
             let r = random.uniform(0.5, 2.0) * random.sign();
             let c = cubic(r, random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0), random.uniform(0.5, 2.0));
             let (place, value) = (random.below(400) as i32 - 200, random.below(300) as i32 - 150);
@@ -356,8 +357,7 @@ mod tests {
             if let Some(quick) = run(Quick(c)) {
                 let found = run(Balanced(scaled)).expect("as quickly as of ordinary size");
                 assert_eq!(listed(&found, -place), listed(&quick, 0), "{c:?} {place} {value}");
-            } else {
-                assert!(case > 0);
+                answered += 1;
             }
             let c = [c[0], c[1], c[2]];
             let quick = quadratic(c, Interval::LINE);
@@ -367,5 +367,6 @@ mod tests {
                 assert!((c[1] * c[1] - 4.0 * c[0] * c[2]).abs() < 1e-6 || c[0] * c[2] == 0.0, "{c:?}");
             }
         }
+        assert!(answered > 3900, "{answered}");
     }
 }
