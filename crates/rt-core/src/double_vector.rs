@@ -2,6 +2,7 @@
 
 use crate::double::{Double, two_difference, two_sum};
 use crate::kernel::Product;
+use crate::math::sqrt;
 use core::ops::{Add, Neg, Sub};
 use glam::DVec3;
 
@@ -157,6 +158,21 @@ impl DoubleVector {
     #[inline(always)]
     pub fn length_squared<P: Product>(self) -> Double {
         self.x.square::<P>() + self.y.square::<P>() + self.z.square::<P>()
+    }
+
+    /// The length: right to 2^-101 of itself.
+    #[inline(always)]
+    pub fn length<P: Product>(&self) -> Double {
+        let square = |a: Double| {
+            let (p, e) = P::two_product(a.high, a.high);
+            (p, e + 2.0 * (a.high * a.low))
+        };
+        let ((x, x_low), (y, y_low), (z, z_low)) = (square(self.x), square(self.y), square(self.z));
+        let (s, s_low) = two_sum(x, y);
+        let (s, z_s) = two_sum(s, z);
+        let low = (s_low + z_s) + ((x_low + y_low) + z_low);
+        let root = sqrt(s);
+        Double::sum(root, (P::remainder(s, root, root) + low) * (0.5 / root))
     }
 
     /// The leading parts: the nearest `f64` of each coordinate.
