@@ -177,11 +177,7 @@ impl<'s> Tracer<'s> {
     pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
         let scene = self.scene;
         match &scene.seen_by_eye {
-            Some(cube) => {
-                for ((ray, within), found) in rays.iter().zip(within).zip(found) {
-                    *found = scene.geometry.nearest_from(cube, ray, *within);
-                }
-            }
+            Some(cube) => scene.geometry.nearest_from_many(cube, rays, within, found),
             None => scene.geometry.nearest_many(rays, within, found),
         }
     }
