@@ -18,19 +18,34 @@ impl Frustum {
         let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else {
             return Surface::new(hit.t(), self.base, DVec3::ZERO, self.axis.high(), 0.0);
         };
-        let found = kernel::run(FindSurface { frustum: self, ray: &scaled, hit });
-        let scale = exp2i(self.unit);
+        kernel::run(Record(FindSurface { frustum: self, ray: &scaled, hit }))
+    }
+}
+
+/// The whole record in one piece: what travels between two goes through memory.
+struct Record<'a>(FindSurface<'a>);
+
+impl Task for Record<'_> {
+    type Output = Surface;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        let FindSurface { frustum: f, ray, hit } = self.0;
+        let found = match self.0.newton::<P>() {
+            Some(found) => found,
+            None => carefully(self.0),
+        };
+        let scale = exp2i(f.unit);
         let local = found.local.scale_exact(scale);
-        let point = local.plus_f64(self.base);
+        let point = local.plus_f64(f.base);
         let at = found.local.high();
-        let (x, y) = (at.dot(self.first), at.dot(self.second));
+        let (x, y) = (at.dot(f.first), at.dot(f.second));
         let v = match hit.part() {
             BASE => 0.0,
             TOP => 1.0,
-            _ => (found.z / self.height.high).clamp(0.0, 1.0),
+            _ => (found.z / f.height.high).clamp(0.0, 1.0),
         };
         Surface::new(
-            scaled.unscale(found.t).high,
+            ray.unscale(found.t).high,
             point,
             local.high(),
             found.normal,
@@ -41,6 +56,13 @@ impl Frustum {
     }
 }
 
+#[cold]
+#[inline(never)]
+fn carefully(find: FindSurface<'_>) -> Refined {
+    kernel::run(find)
+}
+
+#[derive(Clone, Copy)]
 struct FindSurface<'a> {
     frustum: &'a Frustum,
     ray: &'a ScaledRay,
@@ -60,9 +82,6 @@ impl Task for FindSurface<'_> {
     type Output = Refined;
     #[inline(always)]
     fn run<P: Product>(self) -> Refined {
-        if let Some(found) = self.newton::<P>() {
-            return found;
-        }
         let FindSurface { frustum: f, ray, hit } = self;
         let line = FindLine { frustum: f, ray }.run::<P>();
         let at = match hit.part() {

@@ -22,7 +22,7 @@ use frame::Frame;
 use glam::DVec3;
 use leaving::Leave;
 use line::Line;
-use record::{Direct, Near, Thorough};
+use record::{Direct, Near};
 
 /// A torus of any tilt: a ring (`minor < major`), a horn (equal) or a spindle (`minor > major`, all of whose sheets
 /// are hit).
@@ -280,13 +280,6 @@ impl Torus {
     }
 }
 
-/// A record that takes more than the hit's own point.
-#[cold]
-#[inline(never)]
-fn by_the_line<'a>(near: impl Fn() -> Near<'a>) -> Surface {
-    kernel::run(near()).unwrap_or_else(|| kernel::run(Thorough(near())))
-}
-
 impl Primitive for Torus {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
@@ -316,8 +309,7 @@ impl Primitive for Torus {
             let point = ray.at(hit.t());
             return Surface::new(hit.t(), point, point - self.center, self.axis, largest(point));
         };
-        let near = || Near { torus: self, ray: &scaled, hit };
-        kernel::run(Direct(near())).unwrap_or_else(|| by_the_line(near))
+        kernel::run(Direct(Near { torus: self, ray: &scaled, hit }))
     }
 
     /// Along each coordinate axis the circle reaches `major` times the sine of the angle to the axis; the tube adds

@@ -5,7 +5,7 @@ use super::exact::{self, Crossings};
 use super::line::Line;
 use crate::double::{Double, two_difference, two_sum};
 use crate::double_vector::DoubleVector;
-use crate::kernel::{Product, Task};
+use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledRay, error_radius, largest, times_power};
 use crate::surface::Coordinates;
@@ -18,11 +18,12 @@ use glam::{DVec2, DVec3};
 /// g = (rho - R)^2 + z^2 - r^2,   g' / 2 = q = (rho - R) rho' + z z',   |g'' / 2| <= |d|^2 (1 + R / rho)
 /// ```
 ///
-/// `None` for spindles and wherever they may not be enough.
+/// By the line for spindles and wherever they may not be enough.
 pub(super) struct Direct<'a>(pub Near<'a>);
 
 /// See [`Primitive::surface`](crate::Primitive::surface). `None` where only the whole search can tell which crossing
 /// is meant.
+#[derive(Clone, Copy)]
 pub(super) struct Near<'a> {
     pub torus: &'a Torus,
     pub ray: &'a ScaledRay,
@@ -36,8 +37,26 @@ pub(super) struct Thorough<'a>(pub Near<'a>);
 pub(super) const HIT_ERROR: f64 = exp2i(-38);
 
 impl Task for Direct<'_> {
-    type Output = Option<Surface>;
+    type Output = Surface;
 
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        // Nothing between the numbers and the record: an `Option` of one would be written and copied.
+        match self.quickly::<P>() {
+            Some(surface) => surface,
+            None => by_the_line(self.0),
+        }
+    }
+}
+
+/// A record that takes more than the hit's own point.
+#[cold]
+#[inline(never)]
+fn by_the_line(near: Near<'_>) -> Surface {
+    run(near).unwrap_or_else(|| run(Thorough(near)))
+}
+
+impl Direct<'_> {
     /// Why that is enough: the place is known to 2^-104 of the distance S >= 1 that the ray comes from, its height `z` to
     /// 2^-98, `rho` to 2^-99, hence `g` to 2^-95 r S, which moves the crossing by 2^-96 r S / q. A step `s` leaves at most
     /// `2 M s^2 / q`, where M bounds the second derivative as far as `q` halves, and what the rounding of q, below
@@ -47,7 +66,7 @@ impl Task for Direct<'_> {
     /// theorem there is one within `2 s`, for `M s < q / 2`; that of the hit lies within [`HIT_ERROR`] and
     /// the rounding of the parameter.
     #[inline(always)]
-    fn run<P: Product>(self) -> Option<Surface> {
+    fn quickly<P: Product>(&self) -> Option<Surface> {
         let Direct(Near { torus, ray, hit }) = self;
         let (major, minor) = (torus.major_scaled, torus.minor_scaled);
         let axis = &torus.frame[2];
@@ -291,6 +310,15 @@ fn place_error(uncertainty: f64, slope: f64) -> f64 {
 mod tests {
     use super::*;
 
+    struct Quickly<'a>(Direct<'a>);
+
+    impl Task for Quickly<'_> {
+        type Output = Option<Surface>;
+        fn run<P: Product>(self) -> Option<Surface> {
+            self.0.quickly::<P>()
+        }
+    }
+
     /// What must not become slow unseen: the hit's own point answers nearly all hits of plain rings, and as the line does.
     #[test]
     fn first_way_answers() {
@@ -316,7 +344,7 @@ mod tests {
                 let scaled = torus.scaled(&ray).unwrap();
                 let near = || Near { torus: &torus, ray: &scaled, hit };
                 count[0] += 1;
-                let Some(found) = kernel::run(Direct(near())) else { continue };
+                let Some(found) = kernel::run(Quickly(Direct(near()))) else { continue };
                 count[1] += 1;
                 let line = kernel::run(Thorough(near()));
                 assert_eq!(found.t, line.t, "{torus:?} {ray:?} {hit:?}");
