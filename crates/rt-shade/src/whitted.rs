@@ -33,6 +33,9 @@ pub(crate) struct Tracer<'s> {
     pub stats: Stats,
 }
 
+/// How many hits ahead of its record the memory of an object is asked for: the time of two records is that of a fetch.
+const AHEAD: usize = 4;
+
 /// Shadow rays of many points to one lamp, to be cast together.
 #[derive(Default)]
 struct ShadowQueue {
@@ -208,18 +211,21 @@ impl<'s> Tracer<'s> {
 
     /// The colours that rays from the eye see, whose nearest hits are known: the same as
     /// [`seen_by_eye`](Tracer::seen_by_eye) for each, with the shadow rays of the first hits cast together.
-    pub fn all_seen_by_eye(&mut self, rays: &[Ray], found: &[Option<Found>], colors: &mut Vec<Color>) {
+    pub fn all_seen_by_eye(&mut self, rays: &[Ray], all_found: &[Option<Found>], colors: &mut Vec<Color>) {
         colors.clear();
         // Lamps that hold what they see ask for no search, and what is behind glass is searched otherwise.
         let searched = self.scene.all_opaque && self.scene.seen_by_lamp.iter().any(Option::is_none);
         if !(searched && self.shadows) {
-            colors.extend(rays.iter().zip(found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
+            colors.extend(rays.iter().zip(all_found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
             return;
         }
         let mut queues = core::mem::take(&mut self.queues);
         let mut spawning = Vec::new();
-        for (number, (ray, found)) in rays.iter().zip(found).enumerate() {
+        for (number, (ray, found)) in rays.iter().zip(all_found).enumerate() {
             self.stats.eye_rays += 1;
+            if let Some(Some(soon)) = all_found.get(number + AHEAD) {
+                self.scene.geometry.prefetch(*soon);
+            }
             let Some(found) = *found else {
                 colors.push(self.scene.background);
                 continue;
