@@ -273,7 +273,7 @@ impl<'s> Tracer<'s> {
             direction,
             normal: facing,
             side: Side::of_arrival(direction, surface.normal),
-            material: &scene.materials[scene.objects[found.object as usize].material as usize],
+            material: &scene.materials[scene.material_of[found.object as usize] as usize],
             surface,
         }
     }
@@ -386,8 +386,7 @@ impl<'s> Tracer<'s> {
         let scene = self.scene;
         let filters = &mut self.filters;
         filters.clear();
-        let transmit =
-            |object: u32| scene.materials[scene.objects[object as usize].material as usize].transmit;
+        let transmit = |object: u32| scene.materials[scene.material_of[object as usize] as usize].transmit;
         let mut each = |found: Found| filters.push(transmit(found.object));
         let blocked = match cube {
             Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
@@ -418,7 +417,7 @@ impl<'s> Tracer<'s> {
         let material = v.material;
         let transmits = !material.transmit.is_black();
         let entering = v.side == Side::Outside;
-        let key = self.scene.objects[v.found.object as usize].material;
+        let key = self.scene.material_of[v.found.object as usize];
         let medium = material.ior.map(|ior| Medium { key, ior });
         // An opaque body with an index is never entered: its back is as good as its front.
         let refraction = match medium {
