@@ -7,6 +7,12 @@ use rt_core::Interval;
 /// The edge of a square of pixels whose rays are neighbours in a batch.
 const BLOCK: usize = 4;
 
+/// The rows whose rays are cast together, with one sample a pixel: as many rays as [`Geometry::nearest_many`] looks at in
+/// one piece, for tiles of the usual width.
+///
+/// [`Geometry::nearest_many`]: rt_core::Geometry::nearest_many
+const ROWS: usize = 32;
+
 /// The colours of the pixels of `tile`, row by row. The rays of a few rows are cast together.
 pub(crate) fn tile(
     tracer: &mut Tracer,
@@ -28,14 +34,17 @@ pub(crate) fn tile(
     out.clear();
     out.resize(tile.width as usize * tile.height as usize, [0.0; 3]);
     let (mut rays, mut found, mut colors) = (Vec::new(), Vec::new(), Vec::new());
-    // A few rows at a time, in squares of pixels: neighbours in the list go side by side.
-    for top in (0..tile.height).step_by(BLOCK) {
-        let rows = top..(top + BLOCK as u32).min(tile.height);
-        let places = |left: u32| {
+    let rows = (ROWS / samples).max(1).next_multiple_of(BLOCK);
+    // Some rows at a time, in squares of pixels: neighbours in the list go side by side.
+    for top in (0..tile.height).step_by(rows) {
+        let bottom = (top + rows as u32).min(tile.height);
+        let square = |(left, top): (u32, u32)| {
             let columns = left..(left + BLOCK as u32).min(tile.width);
-            rows.clone().flat_map(move |y| columns.clone().map(move |x| (x, y)))
+            let rows = top..(top + BLOCK as u32).min(bottom);
+            rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
         };
-        let pixels = || (0..tile.width).step_by(BLOCK).flat_map(places);
+        let corners = |top| (0..tile.width).step_by(BLOCK).map(move |left| (left, top));
+        let pixels = || (top..bottom).step_by(BLOCK).flat_map(corners).flat_map(square);
         rays.clear();
         for (x, y) in pixels() {
             for j in 0..n {

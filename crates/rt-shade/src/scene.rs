@@ -32,6 +32,8 @@ pub struct Scene {
     pub(crate) textures: Vec<Texture>,
     pub(crate) materials: Vec<Material>,
     pub(crate) objects: Vec<Object>,
+    /// By object: its material, apart from its name, so that few cache lines hold those of many.
+    pub(crate) material_of: Vec<u32>,
     pub(crate) geometry: Geometry,
     /// By object: what it does to the light of a lamp.
     pub(crate) screens: Vec<Screen>,
@@ -247,6 +249,7 @@ impl SceneBuilder {
             lights: self.lights,
             textures: self.textures,
             materials: self.materials,
+            material_of: self.objects.iter().map(|object| object.material).collect(),
             objects: self.objects,
             geometry,
             screens,

@@ -40,8 +40,9 @@ pub(crate) enum Mapping {
 }
 
 impl Texture {
-    /// The colour at this place of a surface.
-    #[inline]
+    /// The colour at this place of a surface. What is told at once is told without a call, whose answer would be written in
+    /// parts that the caller waits for.
+    #[inline(always)]
     pub(crate) fn color(&self, at: &Surface, mapping: Mapping, object: u32) -> Color {
         match self {
             Texture::Solid(color) => *color,
@@ -74,7 +75,7 @@ impl Checker {
     }
 
     /// The colour at this point of the shape's own frame.
-    #[inline]
+    #[inline(always)]
     pub fn color(&self, p: DVec3) -> Color {
         // The parity of each floor, exact at any size: beyond 2^53 every number is even, as is what a cast makes of
         // numbers beyond the range of integers but for the largest one.
@@ -197,7 +198,7 @@ fn neighbours(at: f64, count: u32, wraps: bool) -> (usize, usize, f64) {
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// The greatest integer that is not above `x`: without a call on machines that have no instruction for it.
-#[inline]
+#[inline(always)]
 fn floor(x: f64) -> f64 {
     if x.abs() < EXACT {
         let whole = x as i64 as f64;

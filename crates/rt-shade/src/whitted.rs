@@ -33,6 +33,9 @@ pub(crate) struct Tracer<'s> {
     pub stats: Stats,
 }
 
+/// How many hits ahead of its record the memory of an object is asked for: the time of two records is that of a fetch.
+const AHEAD: usize = 4;
+
 /// Shadow rays of many points to one lamp, to be cast together.
 #[derive(Default)]
 struct ShadowQueue {
@@ -177,11 +180,7 @@ impl<'s> Tracer<'s> {
     pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
         let scene = self.scene;
         match &scene.seen_by_eye {
-            Some(cube) => {
-                for ((ray, within), found) in rays.iter().zip(within).zip(found) {
-                    *found = scene.geometry.nearest_from(cube, ray, *within);
-                }
-            }
+            Some(cube) => scene.geometry.nearest_from_many(cube, rays, within, found),
             None => scene.geometry.nearest_many(rays, within, found),
         }
     }
@@ -212,18 +211,21 @@ impl<'s> Tracer<'s> {
 
     /// The colours that rays from the eye see, whose nearest hits are known: the same as
     /// [`seen_by_eye`](Tracer::seen_by_eye) for each, with the shadow rays of the first hits cast together.
-    pub fn all_seen_by_eye(&mut self, rays: &[Ray], found: &[Option<Found>], colors: &mut Vec<Color>) {
+    pub fn all_seen_by_eye(&mut self, rays: &[Ray], all_found: &[Option<Found>], colors: &mut Vec<Color>) {
         colors.clear();
         // Lamps that hold what they see ask for no search, and what is behind glass is searched otherwise.
         let searched = self.scene.all_opaque && self.scene.seen_by_lamp.iter().any(Option::is_none);
         if !(searched && self.shadows) {
-            colors.extend(rays.iter().zip(found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
+            colors.extend(rays.iter().zip(all_found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
             return;
         }
         let mut queues = core::mem::take(&mut self.queues);
         let mut spawning = Vec::new();
-        for (number, (ray, found)) in rays.iter().zip(found).enumerate() {
+        for (number, (ray, found)) in rays.iter().zip(all_found).enumerate() {
             self.stats.eye_rays += 1;
+            if let Some(Some(soon)) = all_found.get(number + AHEAD) {
+                self.scene.geometry.prefetch(*soon);
+            }
             let Some(found) = *found else {
                 colors.push(self.scene.background);
                 continue;
@@ -271,7 +273,7 @@ impl<'s> Tracer<'s> {
             direction,
             normal: facing,
             side: Side::of_arrival(direction, surface.normal),
-            material: &scene.materials[scene.objects[found.object as usize].material as usize],
+            material: &scene.materials[scene.material_of[found.object as usize] as usize],
             surface,
         }
     }
@@ -384,8 +386,7 @@ impl<'s> Tracer<'s> {
         let scene = self.scene;
         let filters = &mut self.filters;
         filters.clear();
-        let transmit =
-            |object: u32| scene.materials[scene.objects[object as usize].material as usize].transmit;
+        let transmit = |object: u32| scene.materials[scene.material_of[object as usize] as usize].transmit;
         let mut each = |found: Found| filters.push(transmit(found.object));
         let blocked = match cube {
             Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
@@ -416,7 +417,7 @@ impl<'s> Tracer<'s> {
         let material = v.material;
         let transmits = !material.transmit.is_black();
         let entering = v.side == Side::Outside;
-        let key = self.scene.objects[v.found.object as usize].material;
+        let key = self.scene.material_of[v.found.object as usize];
         let medium = material.ior.map(|ior| Medium { key, ior });
         // An opaque body with an index is never entered: its back is as good as its front.
         let refraction = match medium {

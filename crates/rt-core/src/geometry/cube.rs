@@ -206,6 +206,27 @@ impl Geometry {
     /// geometry.
     #[inline]
     pub fn nearest_from(&self, cube: &DirectionCube, ray: &Ray, within: Interval) -> Option<Found> {
+        self.seen_from(cube, ray, within)
+    }
+
+    /// The same for many rays, each with its interval and its place for the answer: as many as the shortest of the three
+    /// slices holds.
+    pub fn nearest_from_many(
+        &self,
+        cube: &DirectionCube,
+        rays: &[Ray],
+        within: &[Interval],
+        found: &mut [Option<Found>],
+    ) {
+        // An answer goes from registers to its place. Returned by a call it would be written in three parts and read
+        // back as two, which waits for all three.
+        for ((ray, within), found) in rays.iter().zip(within).zip(found) {
+            *found = self.seen_from(cube, ray, *within);
+        }
+    }
+
+    #[inline(always)]
+    fn seen_from(&self, cube: &DirectionCube, ray: &Ray, within: Interval) -> Option<Found> {
         // A ray that counts backwards too has another direction there.
         if ray.origin != cube.point || !(within.min >= 0.0) {
             return self.nearest(ray, within);

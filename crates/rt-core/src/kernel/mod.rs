@@ -20,7 +20,7 @@ mod tests;
 pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
-pub(crate) use memory::vec_on_large_pages;
+pub(crate) use memory::{prefetch, vec_on_large_pages};
 pub use packet::{Beam, BeamShape, EightRays};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};

@@ -7,6 +7,7 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledRay, error_radius, largest, times_power, uncertainty};
+use crate::shape::meeting;
 use crate::surface::Coordinates;
 use crate::{Hit, Ray, Surface};
 use glam::{DVec2, DVec3};
@@ -17,19 +18,34 @@ impl Frustum {
         let Some(scaled) = ScaledRay::new(ray, self.base, self.unit) else {
             return Surface::new(hit.t(), self.base, DVec3::ZERO, self.axis.high(), 0.0);
         };
-        let found = kernel::run(FindSurface { frustum: self, ray: &scaled, hit });
-        let scale = exp2i(self.unit);
+        kernel::run(Record(FindSurface { frustum: self, ray: &scaled, hit }))
+    }
+}
+
+/// The whole record in one piece: what travels between two goes through memory.
+struct Record<'a>(FindSurface<'a>);
+
+impl Task for Record<'_> {
+    type Output = Surface;
+    #[inline(always)]
+    fn run<P: Product>(self) -> Surface {
+        let FindSurface { frustum: f, ray, hit } = self.0;
+        let found = match self.0.newton::<P>() {
+            Some(found) => found,
+            None => carefully(self.0),
+        };
+        let scale = exp2i(f.unit);
         let local = found.local.scale_exact(scale);
-        let point = local.plus_f64(self.base);
+        let point = local.plus_f64(f.base);
         let at = found.local.high();
-        let (x, y) = (at.dot(self.first), at.dot(self.second));
+        let (x, y) = (at.dot(f.first), at.dot(f.second));
         let v = match hit.part() {
             BASE => 0.0,
             TOP => 1.0,
-            _ => (found.z / self.height.high).clamp(0.0, 1.0),
+            _ => (found.z / f.height.high).clamp(0.0, 1.0),
         };
         Surface::new(
-            scaled.unscale(found.t).high,
+            ray.unscale(found.t).high,
             point,
             local.high(),
             found.normal,
@@ -40,6 +56,13 @@ impl Frustum {
     }
 }
 
+#[cold]
+#[inline(never)]
+fn carefully(find: FindSurface<'_>) -> Refined {
+    kernel::run(find)
+}
+
+#[derive(Clone, Copy)]
 struct FindSurface<'a> {
     frustum: &'a Frustum,
     ray: &'a ScaledRay,
@@ -59,9 +82,6 @@ impl Task for FindSurface<'_> {
     type Output = Refined;
     #[inline(always)]
     fn run<P: Product>(self) -> Refined {
-        if let Some(found) = self.newton::<P>() {
-            return found;
-        }
         let FindSurface { frustum: f, ray, hit } = self;
         let line = FindLine { frustum: f, ray }.run::<P>();
         let at = match hit.part() {
@@ -121,9 +141,10 @@ impl Task for FindSurface<'_> {
 impl FindSurface<'_> {
     /// One or two Newton steps from the hit's parameter; `None` where they may not be enough.
     ///
-    /// In units of the frustum's size, the place `p` is known to 2^-104 of the distance S that the ray comes from, and
-    /// the residual of the side with its factor 2 (1 + |k|) and the roundings to 2^-100 S while the slope k is below
-    /// 2^3; that moves the crossing by 2^-101 S over half the derivative, q: by less than 2^-72 for `q > 2^-28 S`. A
+    /// In units of the frustum's size, the place `p` is known to 2^-104 of the distance S >= 1 that the ray comes from, and
+    /// lies within 3 of the base: its height to 2^-98 (`inner`), the radius to that times the slope k < 2^3, the residual
+    /// of the side, with its factor of twice the radius < 2, to 2^-93 and, for the rest of it, 2^-96 S. That moves the
+    /// crossing by 2^-93.8 S over half the derivative, q: by less than 2^-71 for `q > 2^-22 S`. A
     /// step s leaves `s^2 A / (2 q)`, and what the rounding of q, below 2^-47, does to it, `2^-47 s / q`: for
     /// `s A < 2^-36 q` and `s < 2^-36 q` less than 2^-73 q and 2^-83. A cap is the same without curvature.
     #[inline(always)]
@@ -141,7 +162,7 @@ impl FindSurface<'_> {
                 return None;
             }
             let p = ray.relative.advanced::<P>(d, t);
-            let change = (height - f.axis.dot::<P>(p)).high / z_growth;
+            let change = (height - f.axis.inner::<P>(&p)).high / z_growth;
             if !(change.abs() < exp2i(-42) * z_growth.abs()) {
                 return None;
             }
@@ -159,22 +180,25 @@ impl FindSurface<'_> {
         let base_radius = f.base_radius * exp2i(-f.unit);
         for _ in 0..2 {
             let p = ray.relative.advanced::<P>(d, t);
-            let z = f.axis.dot::<P>(p);
-            let away = p - f.axis.mul::<P>(z);
+            let z = f.axis.inner::<P>(&p);
+            let away = p.less::<P>(&f.axis, z);
             let radius = f.slope.mul::<P>(z) + base_radius;
             let q = side * (away.high().dot(across) - radius.high * e1);
-            if !(q > exp2i(-28) * far && radius.high > exp2i(-16)) {
+            if !(q > exp2i(-22) * far && radius.high > exp2i(-16)) {
                 return None;
             }
-            let excess = away.length_squared::<P>() - radius.square::<P>();
-            let change = -side * (excess.high / (2.0 * q));
+            // Divisions before the long sum that they need not wait for.
+            let per_excess = -0.5 * side / q;
+            let inverse = 1.0 / radius.high;
+            let change = away.excess_over::<P>(radius) * per_excess;
             t = Double::sum(t.high, t.low + change);
             let size = change.abs();
             if size * curvature < exp2i(-36) * q && size < exp2i(-36) * q {
                 let away = away.nudged(across, change);
-                let radius = radius + e1 * change;
-                let part = f.radial.div::<P>(radius);
-                let normal = (away.mul::<P>(part) + f.axis.mul::<P>(f.axial)).high();
+                // What the step does to the radius is below 2^-17 of it: its square vanishes.
+                let mut part = meeting::quotient::<P>(f.radial, radius, inverse);
+                part.low -= part.high * (e1 * change * inverse);
+                let normal = away.blend::<P>(part, &f.axis, f.axial);
                 let z = (z + z_growth * change).high;
                 return Some(Refined { t, local: p.nudged(d, change), normal, z, error });
             }

@@ -55,7 +55,8 @@ pub(super) struct RoughLine {
     pub first: f64,
     pub rest: f64,
     pub square: f64,
-    /// One over the length of the direction.
+    /// The length of the direction, and one over it.
+    pub length: f64,
     pub inverse: f64,
     pub k: f64,
     pub z: f64,
@@ -111,7 +112,8 @@ impl RoughLine {
         if square > torus.reach * torus.reach * (1.0 + 32.0 * U) {
             return None;
         }
-        let inverse = 1.0 / sqrt(length_squared);
+        let length = sqrt(length_squared);
+        let inverse = 1.0 / length;
         let k = square - torus.squares.high;
         let z = m.dot(torus.axis);
         let slope = d.dot(torus.axis) * inverse;
@@ -120,6 +122,7 @@ impl RoughLine {
             first,
             rest,
             square,
+            length,
             inverse,
             k,
             z,
@@ -157,28 +160,46 @@ impl RoughLine {
         }
     }
 
-    /// Whether the line, where it is inside the slab that holds the tube, is certainly nearer to the axis than the tube,
-    /// or farther away.
+    /// The stretch of the line, in distances from the closest approach, on which a hit inside the interval must lie: inside
+    /// the sphere about the torus (which is `end` away), the slab that holds the tube and the interval.
     ///
-    /// The square of the distance from the axis, `|m|^2 + x^2 - z^2`, is convex along the line, hence greatest where the
-    /// line enters or leaves the slab, where z^2 = r^2; and it is nowhere less than with that z^2. The slab is taken
-    /// thicker by what `z` errs, 16 u S, and by the rounding of the numerators; `|m|^2` errs by 11 u S^2, and `x^2`, at most
-    /// S^2 wherever it matters, by 8 u of itself. A line along the slab gives infinities or NaN, which decide nothing.
+    /// The slab is taken thicker by what `z` errs, 16 u S, and by the rounding of the numerators, the interval longer by
+    /// what a parameter errs, `error`, and twice what a hit may be off. A line along the slab gives infinities, or NaN,
+    /// which bounds nothing.
     #[inline(always)]
-    fn passes_the_tube(&self, torus: &Torus) -> bool {
+    fn stretch(&self, torus: &Torus, end: f64, within: Interval, per_unit: f64, error: f64) -> (f64, f64) {
         let s = torus.reach;
         let height = torus.minor_scaled + 32.0 * U * s;
-        let inverse = 1.0 / self.slope;
-        let (enter, leave) = ((-height - self.z) * inverse, (height - self.z) * inverse);
-        let (enter_squared, leave_squared) = (enter * enter, leave * leave);
-        let (least, most) = if enter_squared < leave_squared {
-            (enter_squared, leave_squared)
-        } else {
-            (leave_squared, enter_squared)
+        let per_height = 1.0 / self.slope;
+        let (enter, leave) = ((-height - self.z) * per_height, (height - self.z) * per_height);
+        let (enter, leave) = if enter > leave { (leave, enter) } else { (enter, leave) };
+        let margin = 2.0 * HIT_ERROR * s + error * self.length;
+        let place = |t: f64| ((t * per_unit - self.first) - self.rest) * self.length;
+        let later = |a: f64, b: f64| if a > b { a } else { b };
+        let sooner = |a: f64, b: f64| if a < b { a } else { b };
+        (
+            later(place(within.min) - margin, later(enter, -end)),
+            sooner(place(within.max) + margin, sooner(leave, end)),
+        )
+    }
+
+    /// Whether a stretch of the line is certainly nearer to the axis than the tube, or farther away.
+    ///
+    /// The square of the distance from the axis, `|m|^2 + x^2 - z^2`, is convex along the line: greatest at an end, and
+    /// least at the first where it grows there, at the last where it falls there. `|m|^2` errs by 11 u S^2, `x^2`, at most
+    /// S^2, by 8 u of itself, `z^2` by 32 u S^2; and half its derivative by 20 u S, which counts along 2 S.
+    #[inline(always)]
+    fn passes_the_tube(&self, torus: &Torus, from: f64, to: f64) -> bool {
+        let square = |x: f64| {
+            let z = self.z + x * self.slope;
+            (self.square + x * x - z * z, x - z * self.slope)
         };
-        let slack = 64.0 * U * s * s;
-        most < torus.hole - self.square - slack
-            || (enter * leave > 0.0 && least > torus.rim - self.square + slack)
+        let ((first, growth), (last, last_growth)) = (square(from), square(to));
+        let most = if first > last { first } else { last };
+        let slack = 128.0 * U * torus.reach * torus.reach;
+        most < torus.hole - slack
+            || (growth > 0.0 && first > torus.rim + slack)
+            || (last_growth < 0.0 && last > torus.rim + slack)
     }
 
     /// An eighth of the second derivative.
@@ -264,18 +285,11 @@ impl Task for Filter<'_> {
         let s = torus.reach;
         // Where the line is inside the sphere about the torus, and a little more.
         let end = sqrt((s * s - line.square).max(0.0) + 64.0 * U * s * s);
-        // The slab that holds the tube.
-        if line.z.abs() - line.slope.abs() * end > torus.minor_scaled + 32.0 * U * s {
-            return MISS;
-        }
-        if line.passes_the_tube(torus) {
-            return MISS;
-        }
         // What the parameters err: the sum's roundings, the first step's product with the exact rest, and the
         // distance, of which a little more is asked below.
         let error_t = 4.0 * U * (line.first.abs() + line.rest.abs() + end * line.inverse);
-        let (from, to) = (line.parameter_at(-end), line.parameter_at(end));
-        if (to + error_t) * unit <= within.min || (from - error_t) * unit >= within.max {
+        let (from, to) = line.stretch(torus, end, within, exp2i(-ray.power), 2.0 * error_t);
+        if from > to || line.passes_the_tube(torus, from, to) {
             return MISS;
         }
 
@@ -519,7 +533,10 @@ mod tests {
             fn run<P: Product>(self) -> Self::Output {
                 let rough = RoughLine::new::<P>(self.0, self.1)?;
                 let line = Line::of::<P>(self.0, self.1);
-                Some((rough.passes_the_tube(self.0), exact::crossings::<P>(self.0, &line).as_slice().len()))
+                let s = self.0.reach;
+                let (from, to) = rough.stretch(self.0, s, Interval::LINE, 1.0, 0.0);
+                let passes = rough.passes_the_tube(self.0, from, to);
+                Some((passes, exact::crossings::<P>(self.0, &line).as_slice().len()))
             }
         }
         let mut random = Random::new(3);

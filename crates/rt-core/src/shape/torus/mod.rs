@@ -22,7 +22,7 @@ use frame::Frame;
 use glam::DVec3;
 use leaving::Leave;
 use line::Line;
-use record::{Near, Thorough};
+use record::{Direct, Near};
 
 /// A torus of any tilt: a ring (`minor < major`), a horn (equal) or a spindle (`minor > major`, all of whose sheets
 /// are hit).
@@ -54,9 +54,9 @@ pub struct Torus {
     minor_scaled: f64,
     /// `R + r`.
     reach: f64,
-    /// `(R - r)^2 + r^2`, or NaN for a spindle, whose inner sheet is where others have their hole.
+    /// `(R - r)^2`, or NaN for a spindle, whose inner sheet is where others have their hole.
     hole: f64,
-    /// `(R + r)^2 + r^2`.
+    /// `(R + r)^2`.
     rim: f64,
     /// `R^2 + r^2`.
     squares: Double,
@@ -96,7 +96,6 @@ impl Torus {
         let scale = exponent(if major > minor { major } else { minor });
         let (major_scaled, minor_scaled) = (major * exp2i(-scale), minor * exp2i(-scale));
         let (inner, reach) = (major_scaled - minor_scaled, major_scaled + minor_scaled);
-        let minor_squared = minor_scaled * minor_scaled;
         let outer = (major + minor).next_up();
         let (squares, difference, twice) = kernel::run(Squares { major: major_scaled, minor: minor_scaled });
         Ok(Torus {
@@ -111,8 +110,8 @@ impl Torus {
             major_scaled,
             minor_scaled,
             reach,
-            hole: if inner > 0.0 { inner * inner + minor_squared } else { f64::NAN },
-            rim: reach * reach + minor_squared,
+            hole: if inner > 0.0 { inner * inner } else { f64::NAN },
+            rim: reach * reach,
             squares,
             difference,
             twice,
@@ -309,11 +308,7 @@ impl Primitive for Torus {
             let point = ray.at(hit.t());
             return Surface::new(hit.t(), point, point - self.center, self.axis, largest(point));
         };
-        let near = || Near { torus: self, ray: &scaled, hit };
-        match kernel::run(near()) {
-            Some(surface) => surface,
-            None => kernel::run(Thorough(near())),
-        }
+        kernel::run(Direct(Near { torus: self, ray: &scaled, hit }))
     }
 
     /// Along each coordinate axis the circle reaches `major` times the sine of the angle to the axis; the tube adds
