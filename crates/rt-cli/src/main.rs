@@ -14,6 +14,7 @@ mod render;
 mod roots;
 mod scene_file;
 mod stitch;
+mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
@@ -138,7 +139,10 @@ Examples:
 
 fn main() -> ExitCode {
     // Prints help, version and usage errors itself: exit code 2 for the last.
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse().unwrap_or_else(|mut error| {
+        usage::add_tip(&mut error);
+        error.exit()
+    });
     match run(arguments.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

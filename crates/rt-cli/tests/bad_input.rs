@@ -512,6 +512,27 @@ fn bad_options_are_refused_before_anything_is_read() {
     println!("options that make no sense: {} inputs, all refused", options.len() + 7);
 }
 
+/// An option that other programs have is answered by the name of ours.
+#[test]
+fn options_of_other_programs() {
+    let workshop = Workshop::new();
+    for (option, ours) in [
+        (&["--size", "4x4"][..], "'--width' and '--height'"),
+        (&["--resolution=4x4"], "'--width' and '--height'"),
+        (&["--samples", "4"], "'--aa grid:N'"),
+        (&["--out", "a.png"], "'--output'"),
+        (&["-j", "2"], "'--threads'"),
+        // A slip of the fingers is answered as ever.
+        (&["--widht", "4"], "'--width'"),
+        (&["--frobnicate"], "'--frobnicate'"),
+    ] {
+        let outcome = render(&workshop, "scene.toml", option);
+        assert_eq!(outcome.code(), 2, "{option:?}: {outcome:?}");
+        let tip = outcome.stderr.lines().find(|line| line.contains("tip: "));
+        assert!(tip.is_some_and(|tip| tip.contains(ours)), "{option:?}: {outcome:?}");
+    }
+}
+
 /// Every prefix of the scene either is one or is refused with its place. In this process: a command for each would
 /// take minutes.
 #[test]
