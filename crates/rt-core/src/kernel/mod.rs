@@ -12,6 +12,7 @@ mod lanes;
 mod level;
 mod memory;
 mod packet;
+mod pair;
 mod stack;
 mod task;
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::vec_on_large_pages;
 pub use packet::{Beam, BeamShape, EightRays};
+pub use pair::{Pair, Pairs};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
 
