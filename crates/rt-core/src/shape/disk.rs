@@ -162,7 +162,8 @@ impl Rim {
     /// A bound on its error for a close parameter, as simple as can be: see [`Disk::plainly`].
     ///
     /// A place nearer than 2 r errs by 2^-39 of `|t d| <= |v| + 2 r` along the ray, v the origin seen from the centre; one
-    /// beyond, by that of `|v| + rho`. Either is below e if |rho - r| is, for e = 2^-37 |v| + 2^-36 r + 8 u r.
+    /// beyond, by that of `|v| + rho`. Either is below e if |rho - r| is, for e = 2^-37 |v| + 2^-36 r + 8 u r. For a hit
+    /// that is more than what [`Disk::plainly`] allows for: it does not doubt what this does not.
     #[inline(always)]
     fn doubt(&self, rough: &Rough) -> f64 {
         let along = exp2i(-37) * rough.reach();

@@ -30,8 +30,6 @@ pub struct Triangle {
     scaled_normal: DVec3,
     /// What rounding to `normal` left, so that both together are within 2^-104.
     normal_rest: DVec3,
-    /// The largest coordinate of the edges, in size.
-    reach: f64,
     normal: DVec3,
     /// The world axis that the normal lies along exactly.
     axis: Option<u8>,
@@ -68,7 +66,6 @@ impl Triangle {
             c,
             scaled_normal,
             normal_rest: DVec3::from_array(normal.map(|n| n.low)),
-            reach,
             normal: flat::unit(normal),
             axis: flat::world_axis(scaled_normal),
             normal_power,
@@ -134,11 +131,11 @@ impl Triangle {
         if !ray.is_valid() {
             return None;
         }
-        let there = Relative::new(self.a(), ray, self.reach);
+        let there = Relative::new(self.a(), ray, self.sides.reach);
         let span = there.interval(within);
         let [x, y, z] = self.sides.edges.0.map(|[first, second]| (first * there.unit, -second * there.unit));
         let edges = [DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1)];
-        let reach = self.reach * there.unit;
+        let reach = self.sides.reach * there.unit;
         let power = 2 * crate::math::exponent(reach) + self.normal_power;
         match Sides::new(self.sides.facing.at(DVec3::ZERO), edges, reach, power).plainly(&there.ray, span) {
             Ok(hit) => return there.hit(hit?, within),
@@ -290,7 +287,7 @@ impl Piece for Triangle {
     }
 
     fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
-        Surface::new(hit.t(), self.a(), DVec3::ZERO, self.normal, self.reach)
+        Surface::new(hit.t(), self.a(), DVec3::ZERO, self.normal, self.sides.reach)
     }
 }
 
@@ -308,7 +305,7 @@ impl Triangle {
         // gives beta = (l x e2)_k / n_k and gamma = (e1 x l)_k / n_k.
         let k = flat::dominant(self.scaled_normal);
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let power = flat::power_of(DVec3::splat(self.reach));
+        let power = flat::power_of(DVec3::splat(self.sides.reach));
         let [a, b, c] = self.corners().map(|p| p.to_array());
         let unit = exp2i(-power);
         let edge = |to: [f64; 3]| [i, j].map(|i| Double::difference(to[i], a[i]).scale_exact(unit));
