@@ -1,7 +1,8 @@
 //! Instruction sets, picked at run time: the only module with `unsafe` code.
 //!
 //! Whatever is detected, the results are the same bits: fused multiply-add is used for error-free products only
-//! (where it computes exactly what Dekker's splitting computes), and vector code only culls.
+//! (where it computes exactly what Dekker's splitting computes), and vector code only culls, but for [`Pair`], whose lanes round
+//! as numbers by themselves do on every machine.
 #![allow(unsafe_code)]
 
 mod avx2;
@@ -12,6 +13,7 @@ mod lanes;
 mod level;
 mod memory;
 mod packet;
+mod pair;
 mod stack;
 mod task;
 #[cfg(test)]
@@ -22,6 +24,7 @@ pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::{prefetch, vec_on_large_pages};
 pub use packet::{Beam, BeamShape, EightRays};
+pub use pair::{Pair, Pairs};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
 

@@ -80,6 +80,35 @@ fn lanes_agree() {
     }
 }
 
+/// Each lane of a pair is what a number by itself gives, to the bit; comparisons with NaN are false.
+#[test]
+fn pairs_are_two_numbers() {
+    let numbers = [0.0, -0.0, 1.5, -3.7, 1e-310, 1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    let all = || numbers.iter().flat_map(|&a| numbers.iter().map(move |&b| (a, b)));
+    let lanes = |pair: Pair| [pair.low(), pair.high()].map(bits);
+    for (a, b) in all() {
+        for (c, d) in all() {
+            let (p, q) = (Pair::new(a, b), Pair::new(c, d));
+            let same = |pair: Pair, low: f64, high: f64| assert_eq!(lanes(pair), [bits(low), bits(high)]);
+            same(p + q, a + c, b + d);
+            same(p - q, a - c, b - d);
+            same(p * q, a * c, b * d);
+            same(p / q, a / c, b / d);
+            same(p.lows(q), a, c);
+            same(p.highs(q), b, d);
+            same(p.abs(), a.abs(), b.abs());
+            let greater = |a: f64, b: f64| if a > b { a } else { b };
+            same(p.max(q), greater(a, c), greater(b, d));
+            assert_eq!(p.is_below(q), a < c && b < d);
+            if !a.is_nan() && !b.is_nan() {
+                assert_eq!(p.signs(), a.is_sign_negative() as i32 | (b.is_sign_negative() as i32) << 1);
+            }
+        }
+        let pairs = Pairs([[a, b], [b, a]]);
+        assert_eq!(lanes(pairs.get(1)), [bits(b), bits(a)]);
+    }
+}
+
 /// Once detected, the quick question and the full one have the same answer.
 #[test]
 fn the_level_is_known_everywhere() {

@@ -3,7 +3,7 @@
 
 use crate::double::Double;
 use crate::expansion::Expansion;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Pair, Pairs, Product, Task, run};
 use crate::math::{exp2i, exponent};
 use crate::scaled::{largest, times_power};
 use crate::{Aabb, Error, Hit, Interval, Ray};
@@ -16,71 +16,180 @@ pub(super) const U: f64 = exp2i(-53);
 /// covers more than a hundred of them.
 pub(super) const LEAST_CERTAIN: f64 = exp2i(-1022) * exp2i(-38);
 
-/// The parameter at which a ray meets a plane, in plain `f64`, and how far to trust it.
+/// A plane as the two inner products of a ray with its normal read it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facing {
+    /// The coordinates x and y of a point; z and zero, or NaN for a normal that is left to exact arithmetic.
+    anchor: Pairs<2>,
+    /// A sixteenth of the normal, against it and along it: -x and -y; -z and x; y and z.
+    normal: Pairs<3>,
+}
+
+impl PartialEq for Facing {
+    fn eq(&self, other: &Facing) -> bool {
+        self.anchor() == other.anchor() && self.normal == other.normal
+    }
+}
+
+impl Facing {
+    /// The plane through `anchor` across `n`, whose components are below 2, each within u.
+    pub(super) fn new(anchor: DVec3, n: DVec3) -> Facing {
+        // Products with components of this size may lose all digits to underflow.
+        let tiny = |x: f64| x != 0.0 && x.abs() < exp2i(-900);
+        let n = n * 0.0625;
+        let zero = if tiny(n.x) || tiny(n.y) || tiny(n.z) { f64::NAN } else { 0.0 };
+        Facing {
+            anchor: Pairs([[anchor.x, anchor.y], [anchor.z, zero]]),
+            normal: Pairs([[-n.x, -n.y], [-n.z, n.x], [n.y, n.z]]),
+        }
+    }
+
+    /// The plane through another point.
+    pub(super) fn at(&self, anchor: DVec3) -> Facing {
+        let Pairs([_, [_, zero]]) = self.anchor;
+        Facing { anchor: Pairs([[anchor.x, anchor.y], [anchor.z, zero]]), ..*self }
+    }
+
+    /// The point.
+    #[inline(always)]
+    pub(super) fn anchor(&self) -> DVec3 {
+        let Pairs([[x, y], [z, _]]) = self.anchor;
+        DVec3::new(x, y, z)
+    }
+}
+
+/// Numerator and denominator of the parameter at which a ray meets a plane, in plain `f64`, and how far to trust them.
+#[derive(Clone, Copy)]
 pub(super) struct Rough {
+    /// The coordinates x and y of the origin seen from the anchor; z and the direction's x.
+    start: [Pair; 2],
+    /// Its y and z.
+    rest: Pair,
+    /// Minus the sixteenth normal times the start, and that normal times the direction.
+    products: Pair,
+    /// The sums of the sizes of the terms of both.
+    sizes: Pair,
     /// The parameter.
     pub(super) t: f64,
-    /// The origin seen from the anchor is `-w`.
-    pub(super) w: DVec3,
-    /// A bound on the error of `t`.
-    pub(super) slack: f64,
-    /// A bound on the error of each coordinate of `t d - w`, and on the sum of the errors of all three.
-    pub(super) error: f64,
-    /// Whether the bounds hold: not for rays closer to the plane than about 2^-18, nor where numbers may have
-    /// under- or overflowed.
-    pub(super) sound: bool,
 }
 
 impl Rough {
-    /// For the plane through `anchor` across `n`, whose components are below 2, each within u.
-    ///
-    /// With W and V the sums of the sizes of the coordinates of w and d, the numerator `n . w` errs by at most 10 u W
-    /// (normal, difference, product, two additions, times 2), the denominator by 8 u V, the quotient and the product
-    /// by 2 u of themselves. With `G = V / |n . d|`, at least 1/2, and |t| <= 2 W / |n . d| that makes
-    /// `|dt| <= (10 + 16 G + 4) u W / |n . d|`, which is at most 44 u G W / |n . d|, and 45 pays for the second order
-    /// too. The point adds three roundings of `w` and `t d`: 3 u W (1 + 2 G), at most 12 u W G and thus 24 u W G^2.
+    /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, the numerator
+    /// errs by less than 5 u N (normal, difference, product, two additions), the denominator by 4 u M. Where the former is
+    /// more than 2^-36 N and the latter more than 2^-18 M, their quotient errs by less than 2^-14.6 + 2^-32 of itself. 2^-960
+    /// added to N and M is far more than 2^36 times what products lose to underflow; none overflows, with the sixteenth of a
+    /// normal. Infinities and NaN fail.
     #[inline(always)]
-    pub(super) fn new(anchor: DVec3, n: DVec3, ray: &Ray) -> Rough {
-        let (w, d) = (anchor - ray.origin, ray.direction);
-        let inverse = 1.0 / (n.x * d.x + n.y * d.y + n.z * d.z);
-        let t = (n.x * w.x + n.y * w.y + n.z * w.z) * inverse;
-        let reach = w.x.abs() + w.y.abs() + w.z.abs();
-        let speed = d.x.abs() + d.y.abs() + d.z.abs();
-        let steep = speed * inverse;
-        let relative = (45.0 * U) * reach * steep;
-        let slack = relative * inverse;
-        // These and the next range bound all other numbers: products that underflow err by 2^-1075, nothing against
-        // 2^-53 of these. NaN and infinities fail too.
-        let sound = (steep.abs() < exp2i(18)) & ordinary(reach) & ordinary(speed);
-        Rough { t, w, slack, error: 2.0 * relative * steep, sound }
+    pub(super) fn new(plane: &Facing, ray: &Ray) -> Rough {
+        let (o, d) = (ray.origin, ray.direction);
+        let (anchor, n) = (&plane.anchor, &plane.normal);
+        let start = [Pair::new(o.x, o.y) - anchor.get(0), Pair::new(o.z, d.x) - anchor.get(1)];
+        let (a, b, c) = (start[0] * n.get(0), start[1] * n.get(1), Pair::new(d.y, d.z) * n.get(2));
+        let (first, second) = (a.lows(c), a.highs(c));
+        let products = (first + second) + b;
+        let sizes = ((first.abs() + second.abs()) + b.abs()) + Pair::new(exp2i(-960), exp2i(-960));
+        Rough { start, rest: Pair::new(d.y, d.z), products, sizes, t: products.low() / products.high() }
+    }
+
+    /// Whether the relative error of `t` is less than 2^-14. See [`new`](Rough::new).
+    #[inline(always)]
+    pub(super) fn is_sound(&self) -> bool {
+        (self.sizes * Pair::new(exp2i(-36), exp2i(-18))).is_below(self.products.abs())
+    }
+
+    /// Whether it is less than 2^-39: with both more than 2^-10 of the sums, it is 9 u 2^10 and a rounding.
+    #[inline(always)]
+    pub(super) fn is_close(&self) -> bool {
+        (self.sizes * Pair::new(exp2i(-10), exp2i(-10))).is_below(self.products.abs())
+    }
+
+    /// The cross product of the origin seen from the anchor and the direction.
+    #[inline(always)]
+    pub(super) fn moment(&self) -> DVec3 {
+        let ([first, second], rest) = (self.start, self.rest);
+        let x_y = Pair::new(first.high(), second.low()) * rest.highs(second) - second.lows(first) * rest;
+        let z = first.low() * rest.low() - first.high() * second.high();
+        DVec3::new(x_y.low(), x_y.high(), z)
+    }
+
+    /// A sixteenth of the product of normal and direction.
+    #[inline(always)]
+    pub(super) fn slope(&self) -> f64 {
+        self.products.high()
+    }
+
+    /// The largest coordinates, in size, of the origin seen from the anchor and of the direction.
+    #[inline(always)]
+    pub(super) fn largest(&self) -> (f64, f64) {
+        let ([first, second], rest) = (self.start, self.rest);
+        let largest = first.lows(rest).abs().max(first.highs(rest).abs()).max(second.abs());
+        (largest.low(), largest.high())
+    }
+
+    /// The square of the distance between the place and the anchor, rounded five times.
+    #[inline(always)]
+    pub(super) fn distance_squared(&self) -> f64 {
+        let [first, second] = self.start;
+        let x = first.low() + second.high() * self.t;
+        let rest = Pair::new(first.high(), second.low()) + self.rest * Pair::new(self.t, self.t);
+        let squares = rest * rest;
+        squares.low() + squares.high() + x * x
+    }
+
+    /// At least the distance between the origin and the anchor.
+    #[inline(always)]
+    pub(super) fn reach(&self) -> f64 {
+        let [first, second] = self.start.map(Pair::abs);
+        first.low() + first.high() + second.low()
+    }
+
+    /// A bound on the error of a sound `t`, and on ten roundings of it: of a close one, less than 2^-39.5 of it.
+    ///
+    /// The relative errors of numerator, denominator and quotient make `5 u N / |n . v| + 4 u M / |n . d| + u` to first order.
+    /// What underflows in `t` errs by 2^-1074.
+    #[inline(always)]
+    pub(super) fn slack(&self) -> f64 {
+        let lost = self.sizes / self.products.abs();
+        self.t.abs() * ((6.0 * U) * lost.low() + (5.0 * U) * lost.high()) + exp2i(-1000)
     }
 
     /// Whether the interval ends exactly at the parameter: then it was made from that hit, and does not contain it.
+    #[inline(always)]
     pub(super) fn ends(&self, within: Interval) -> bool {
-        self.sound && (self.t == within.min || self.t == within.max)
+        self.is_sound() && (self.t == within.min || self.t == within.max)
     }
 
-    /// Whether the true parameter is certainly in the interval, and whether it certainly is not.
+    /// Whether the parameter is so far from both ends of the interval that it is certain whether that contains it.
     #[inline(always)]
-    pub(super) fn sides(&self, within: Interval) -> (bool, bool) {
-        let Rough { t, slack, sound, .. } = *self;
-        let inside = sound & (t - within.min > slack) & (within.max - t > slack);
-        let beside = sound & ((within.min - t > slack) | (t - within.max > slack));
-        (inside, beside)
+    pub(super) fn is_clear(&self, within: Interval) -> bool {
+        is_apart(self.t, within.min) & is_apart(self.t, within.max)
     }
 
     /// The hit of a ray that certainly meets the shape.
     #[inline(always)]
     pub(super) fn hit(self, within: Interval) -> Verdict {
-        let (inside, beside) = self.sides(within);
-        if inside {
-            Ok(Some(Hit::inside(self.t, 0, 0)))
-        } else if beside {
-            Ok(None)
+        if self.is_sound() & self.is_clear(within) {
+            Ok(self.admit(within, true))
         } else {
             Err(Doubt { ended: self.ends(within) })
         }
     }
+
+    /// The hit, if the shape is met, without a branch between hit and miss, since neighbouring rays may differ.
+    #[inline(always)]
+    pub(super) fn admit(self, within: Interval, meets: bool) -> Option<Hit> {
+        let hit = meets & (self.t > within.min) & (self.t < within.max);
+        if hit { Some(Hit::inside(self.t, 0, 0)) } else { None }
+    }
+}
+
+/// Whether two numbers differ by more than 2^-13 of the larger one, by the order of their bits: numbers of one sign are
+/// ordered like them, those of different signs are far apart. 2^40 units in the last place are between 2^-13 and 2^-12 of a
+/// normal number, and 2^-1034 among subnormal ones.
+#[inline(always)]
+fn is_apart(a: f64, b: f64) -> bool {
+    const LEAST: u64 = 1 << 40;
+    a.to_bits().wrapping_sub(b.to_bits()).wrapping_add(LEAST) > 2 * LEAST
 }
 
 /// The hit or none, where plain `f64` can tell.
@@ -124,13 +233,6 @@ impl Relative {
     pub(super) fn hit(&self, hit: Hit, within: Interval) -> Option<Hit> {
         within.admit(times_power(hit.t(), self.power), hit.part(), hit.root())
     }
-}
-
-/// Whether a number that is not negative lies between 2^-480 and 2^480, by its bits: not for NaN.
-#[inline(always)]
-fn ordinary(x: f64) -> bool {
-    const LEAST: u64 = exp2i(-480).to_bits();
-    x.to_bits().wrapping_sub(LEAST) < exp2i(480).to_bits() - LEAST
 }
 
 /// The vector itself when it is finite and has a length.
@@ -261,46 +363,90 @@ mod tests {
     use crate::testing::Random;
 
     #[test]
-    fn sides_of_an_interval() {
-        let at = |t: f64, slack: f64, sound: bool| Rough { t, w: DVec3::ZERO, slack, error: 0.0, sound };
-        let rough = at(1.0, 0.25, true);
-        for (min, max, expected) in [
-            (0.0, 2.0, (true, false)),
-            (-5.0, 0.5, (false, true)),
-            (1.5, 9.0, (false, true)),
-            (0.875, 2.0, (false, false)),
-            (0.0, 1.125, (false, false)),
-            (1.125, 2.0, (false, false)),
-            (0.0, 0.875, (false, false)),
-        ] {
-            assert_eq!(rough.sides(Interval::new(min, max)), expected, "{min} {max}");
-            assert_eq!(at(1.0, 0.25, false).sides(Interval::new(min, max)), (false, false));
+    fn numbers_apart() {
+        let (near, far) = (1.0 + exp2i(-14), 1.0 + exp2i(-11));
+        for x in [1.0, -1.0, exp2i(-1000), -exp2i(1000), 1.999] {
+            for (factor, expected) in [(near, false), (far, true), (1.0 / near, false), (1.0 / far, true)] {
+                assert_eq!(is_apart(x, x * factor), expected, "{x} {factor}");
+                assert_eq!(is_apart(x * factor, x), expected, "{x} {factor}");
+            }
+            for other in [-x, 0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY] {
+                assert!(is_apart(x, other) && is_apart(other, x), "{x} {other}");
+            }
         }
+        for x in [f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+            assert!(!is_apart(x, x) && !is_apart(x, x.next_down()), "{x}");
+        }
+        assert!(is_apart(0.0, exp2i(-1022)) && !is_apart(0.0, f64::from_bits(5)));
     }
 
-    /// The bounds hold, and are not larger than the roundings can be by more than two hundred times.
     #[test]
-    fn a_parameter_is_known_within_its_slack() {
+    fn hits_in_an_interval() {
+        let facing = Facing::new(DVec3::ZERO, DVec3::Z);
+        let told = |direction: [f64; 3], min, max| {
+            let rough = Rough::new(&facing, &Ray::new([0.0, 0.0, -1.0], direction));
+            rough.hit(Interval::new(min, max)).map(|hit| hit.is_some()).map_err(|doubt| doubt.ended)
+        };
+        for (min, max, expected) in [
+            (0.0, 2.0, Ok(true)),
+            (-5.0, 0.5, Ok(false)),
+            (1.5, 9.0, Ok(false)),
+            (1.0 - exp2i(-20), 2.0, Err(false)),
+            (0.0, 1.0 + exp2i(-20), Err(false)),
+            (1.0, 2.0, Err(true)),
+            (0.0, 1.0, Err(true)),
+            (f64::NEG_INFINITY, f64::INFINITY, Ok(true)),
+            (1.5, 0.5, Ok(false)),
+            (f64::NAN, 2.0, Ok(false)),
+            (0.0, f64::NAN, Ok(false)),
+        ] {
+            assert_eq!(told([0.0, 0.0, 1.0], min, max), expected, "{min} {max}");
+            assert_eq!(told([0.0, 1.0, 0.0], min, max), Err(false));
+            assert_eq!(told([f64::NAN, 0.0, 1.0], min, max), Err(false));
+        }
+        let normal = DVec3::new(exp2i(-950), 0.0, 1.0);
+        let left = Rough::new(&Facing::new(DVec3::ZERO, normal), &Ray::new([0.0, 0.0, -1.0], DVec3::Z));
+        assert!(!left.is_sound());
+    }
+
+    /// What must not become slow unseen, and must be true: nearly all plain rays are sound and close, the errors are what
+    /// they promise, and the slack is not larger than the roundings can be by more than two hundred times.
+    #[test]
+    fn how_far_to_trust_a_parameter() {
         let mut random = Random::new(1);
-        for _ in 0..4000 {
+        let mut count = [0_u32; 2];
+        for case in 0..8000 {
             let (anchor, n) = (random.in_cube(), random.direction());
-            let ray = Ray::new(random.in_cube() * 4.0, random.direction());
-            let rough = Rough::new(anchor, n, &ray);
+            let mut ray = Ray::new(random.in_cube() * 4.0, random.direction());
+            if case % 2 == 1 {
+                // Nearly in the plane.
+                let along = n.cross(random.direction());
+                ray.origin = anchor + along + n * random.magnitude(-11.0, -1.0);
+                ray.direction = n.cross(random.direction()) + n * random.magnitude(-6.0, -1.0);
+            }
+            let rough = Rough::new(&Facing::new(anchor, n), &ray);
             let dot = |a: [Double; 3], b: [Double; 3]| {
                 a.into_iter().zip(b).fold(Double::ZERO, |sum, (a, b)| sum + a.mul::<crate::kernel::Dekker>(b))
             };
             let w = [0, 1, 2].map(|k| Double::difference(anchor[k], ray.origin[k]));
             let slope = dot(doubles(n), doubles(ray.direction));
             let t = dot(doubles(n), w).div::<crate::kernel::Dekker>(slope);
-            assert!((t - rough.t).high.abs() <= rough.slack, "{anchor} {n} {ray:?}");
-            // u |w| over the cosine, once more for the slope.
-            let least = U * (anchor - ray.origin).length() / (slope.high * slope.high);
-            assert!(rough.slack <= 200.0 * least, "{anchor} {n} {ray:?} {}", rough.slack / least);
-            for (k, &w) in w.iter().enumerate() {
-                let exact = t.mul::<crate::kernel::Dekker>(Double::from(ray.direction[k])) - w;
-                let local = ray.direction[k] * rough.t - rough.w[k];
-                assert!((exact - local).high.abs() <= rough.error, "{anchor} {n} {ray:?}");
+            let error = (t - rough.t).high.abs();
+            if case % 2 == 0 {
+                count[0] += u32::from(!rough.is_sound());
+                count[1] += u32::from(!rough.is_close());
             }
+            if !rough.is_sound() {
+                continue;
+            }
+            assert!(error <= rough.slack() && error <= exp2i(-14) * t.high.abs(), "{anchor} {n} {ray:?}");
+            assert!(!rough.is_close() || error <= exp2i(-39) * t.high.abs(), "{anchor} {n} {ray:?}");
+            assert!(!rough.is_close() || rough.slack() <= exp2i(-39) * t.high.abs(), "{anchor} {n} {ray:?}");
+            assert!((anchor - ray.origin).length() <= rough.reach());
+            let place = ray.origin - anchor + ray.direction * rough.t;
+            let (square, rounded) = (place.length_squared(), rough.distance_squared());
+            assert!((square - rounded).abs() < 1e-13 * (1.0 + rough.t * rough.t), "{square} {rounded}");
         }
+        assert!(count[0] == 0 && count[1] < 40, "{count:?}");
     }
 }

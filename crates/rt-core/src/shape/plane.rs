@@ -4,7 +4,7 @@
 //! arithmetic only when an end lies within the error of `t`, or when the ray is parallel to the plane as far as `f64`
 //! can tell. Source of the error bound: Higham, Accuracy and Stability of Numerical Algorithms, section 3.1.
 
-use super::flat::{self, Doubt, Relative, Rough, Verdict};
+use super::flat::{self, Doubt, Facing, Relative, Rough, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::expansion::Expansion;
 use crate::kernel::Product;
@@ -21,7 +21,8 @@ use glam::DVec3;
 /// along y that makes u the world's x and v its z, exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    point: DVec3,
+    /// Its point, and its normal for [`Rough`].
+    facing: Facing,
     /// As given, times a power of two: largest component in `[1, 2)`.
     scaled_normal: DVec3,
     normal: DVec3,
@@ -40,7 +41,7 @@ impl Plane {
         let (normal, _) = flat::prescaled(flat::checked_direction("plane normal", normal.into())?);
         let (first, second) = flat::plane_axes(normal);
         Ok(Plane {
-            point,
+            facing: Facing::new(point, normal),
             scaled_normal: normal,
             normal: flat::unit(flat::doubles(normal)),
             axes: [first, second],
@@ -50,7 +51,7 @@ impl Plane {
 
     /// The point it was made from: the anchor of local and texture coordinates.
     pub fn point(&self) -> DVec3 {
-        self.point
+        self.facing.anchor()
     }
 
     /// The unit normal.
@@ -68,7 +69,7 @@ impl Plane {
     /// # Errors
     /// As [`Plane::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        Plane::new(by.point(self.point), by.direction(self.scaled_normal))
+        Plane::new(by.point(self.point()), by.direction(self.scaled_normal))
     }
 
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
@@ -79,9 +80,9 @@ impl Plane {
         if !ray.is_valid() {
             return None;
         }
-        let there = Relative::new(self.point, ray, 0.0);
+        let there = Relative::new(self.point(), ray, 0.0);
         let span = there.interval(within);
-        match (Plane { point: DVec3::ZERO, ..*self }).plainly(&there.ray, span) {
+        match (Plane { facing: self.facing.at(DVec3::ZERO), ..*self }).plainly(&there.ray, span) {
             Ok(hit) => there.hit(hit?, within),
             Err(Doubt { ended: false }) => within.admit(meeting::meet(self, ray)?.t, 0, 0),
             Err(Doubt { ended: true }) => None,
@@ -90,7 +91,7 @@ impl Plane {
 
     #[inline(always)]
     fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
-        Rough::new(self.point, self.scaled_normal, ray).hit(within)
+        Rough::new(&self.facing, ray).hit(within)
     }
 }
 
@@ -98,7 +99,7 @@ impl Piece for Plane {
     #[inline(always)]
     fn plane(&self) -> ExactPlane {
         ExactPlane {
-            anchor: self.point,
+            anchor: self.point(),
             normal: flat::doubles(self.scaled_normal),
             axis: self.axis,
             offset: 0.0,
@@ -111,7 +112,7 @@ impl Piece for Plane {
 
     #[inline(always)]
     fn record<P: Product>(&self, at: &Meeting) -> Surface {
-        let point = at.point(self.point);
+        let point = at.point(self.point());
         let uv = at.along::<P>(&self.axes, self.axis);
         Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point))
             .with_object_point(uv.extend(0.0))
@@ -119,7 +120,7 @@ impl Piece for Plane {
     }
 
     fn parallel(&self, ray: &Ray, hit: Hit) -> Surface {
-        Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point, self.normal, 0.0)
+        Surface::new(hit.t(), ray.at(hit.t()), ray.at(hit.t()) - self.point(), self.normal, 0.0)
     }
 }
 

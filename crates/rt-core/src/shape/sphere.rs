@@ -25,8 +25,8 @@ use glam::DVec3;
 pub struct Sphere {
     center: DVec3,
     radius: f64,
-    /// 2^-49 of the radius, or NaN where squares would leave the range of the exponents.
-    slack: f64,
+    /// The square of the radius, or NaN where squares would leave the range of the exponents.
+    square: f64,
 }
 
 impl Sphere {
@@ -38,7 +38,7 @@ impl Sphere {
     pub fn new(center: impl Into<DVec3>, radius: f64) -> Result<Self, Error> {
         let center = checked_point("center", center.into())?;
         let radius = checked_length("radius", radius)?;
-        Ok(Sphere { center, radius, slack: radius * exp2i(-49) + range_guard(radius) })
+        Ok(Sphere { center, radius, square: radius * radius + range_guard(radius) })
     }
 
     /// The centre.
@@ -91,7 +91,7 @@ impl Sphere {
     /// Entrance and exit as `f64` finds them.
     #[inline(always)]
     fn rough(&self, ray: &Ray) -> Rough {
-        rough(self.radius, self.slack, ray.origin - self.center, ray.direction)
+        rough(self.radius, self.square, ray.origin - self.center, ray.direction)
     }
 
     /// The same where doubt may have come from the range of the exponents. Powers of two change no digit, so this
@@ -101,7 +101,7 @@ impl Sphere {
         let unit = exponent(self.radius);
         let Some(scaled) = ScaledRay::new(ray, self.center, unit) else { return Rough::Miss };
         let radius = self.radius * exp2i(-unit);
-        match rough(radius, radius * exp2i(-49), scaled.relative.high(), scaled.direction) {
+        match rough(radius, radius * radius, scaled.relative.high(), scaled.direction) {
             Rough::Span(span) => Rough::Span(span.map(|c| c.unscale(scaled.power))),
             other => other,
         }
@@ -179,17 +179,17 @@ struct Approach {
 }
 
 impl Approach {
-    /// `slack`: 16 u r = 2^-49 r, or NaN, so that nothing is certain.
+    /// `near`: the square of the radius, or NaN, so that nothing is certain.
     #[inline(always)]
-    fn new(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Approach {
+    fn new(radius: f64, near: f64, w: DVec3, d: DVec3) -> Approach {
         let square = d.dot(d);
         let inverse = 1.0 / square;
         let middle = -(w.dot(d) * inverse);
         let l = w + d * middle;
         let far = w.x.abs() + w.y.abs() + w.z.abs() + 2.0 * radius;
         // Where `w.d` overflows, so does the square of `far`.
-        let doubt = if moderate(square) { far * (slack + far * exp2i(-97)) } else { f64::NAN };
-        Approach { middle, depth: radius * radius - l.dot(l), inverse, doubt }
+        let doubt = if moderate(square) { far * (radius * exp2i(-49) + far * exp2i(-97)) } else { f64::NAN };
+        Approach { middle, depth: near - l.dot(l), inverse, doubt }
     }
 
     #[inline(always)]
@@ -260,12 +260,11 @@ enum Line {
 /// r < |w| / 6), and by less than `(5.8 r |w| + 10 r^2) u |d|^2`: h by 3 u S over the cosine. `w.d / |d|^2` errs by less
 /// than 9 u |w| / |d|, which is less than 2^-32 of half the chord.
 #[inline(always)]
-fn line(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Line {
-    let (square, along) = (d.dot(d), w.dot(d));
-    let (far, near) = (w.dot(w), radius * radius);
+fn line(near: f64, w: DVec3, d: DVec3) -> Line {
+    let (square, along, far) = (d.dot(d), w.dot(d), w.dot(w));
     let mut depth = along * along - square * (far - near);
-    // NaN with `slack`: then both comparisons are false.
-    let safe = (exp2i(-35) + 0.0 * slack) * (square * (far + near));
+    // NaN with `near`: then both comparisons are false.
+    let safe = exp2i(-35) * (square * (far + near));
     // With the guard of the radius this keeps all products in the range of the exponents but those of a huge `w`, and
     // those make T or the roots infinite or NaN.
     if moderate(square) {
@@ -290,13 +289,13 @@ fn line(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Line {
 }
 
 /// A line and a sphere about zero in `f64`: certain, or in doubt.
-fn rough(radius: f64, slack: f64, w: DVec3, d: DVec3) -> Rough {
-    match line(radius, slack, w, d) {
+fn rough(radius: f64, near: f64, w: DVec3, d: DVec3) -> Rough {
+    match line(near, w, d) {
         Line::Miss => return Rough::Miss,
         Line::Chord(chord) => return Rough::Span(chord.candidates()),
         Line::Doubt => {}
     }
-    let line = Approach::new(radius, slack, w, d);
+    let line = Approach::new(radius, near, w, d);
     match line.chord() {
         Some(chord) => Rough::Span(chord.candidates()),
         None if line.misses() => Rough::Miss,
@@ -392,8 +391,8 @@ impl Task for FindSurface<'_> {
     fn run<P: Product>(self) -> Surface {
         let FindSurface { sphere, ray, hit } = self;
         let relative = DoubleVector::difference(ray.origin, sphere.center);
-        // False for a NaN in `slack`: a radius near the ends of the range.
-        if sphere.slack > 0.0
+        // False for a NaN in `square`: a radius near the ends of the range.
+        if sphere.square > 0.0
             && largest(relative.high()) < exp2i(30) * sphere.radius
             && is_plain(ray.direction)
             && let Some(found) = newton::<P>(&relative, ray.direction, sphere.radius, hit.t(), hit.root())
@@ -439,7 +438,7 @@ impl Task for FindRescaled<'_> {
 impl Primitive for Sphere {
     #[inline(always)]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match line(self.radius, self.slack, ray.origin - self.center, ray.direction) {
+        match line(self.square, ray.origin - self.center, ray.direction) {
             Line::Miss => return None,
             Line::Chord(chord) => {
                 if let Some(hit) = chord.first(within) {

@@ -6,13 +6,13 @@
 //! when one of them is within that bound of zero: two triangles with a common edge see the same exact number, so no
 //! ray slips between them, and none is lost at a common corner.
 
-use super::flat::{self, Doubt, LEAST_CERTAIN, Relative, Rough, U, Verdict};
+use super::flat::{self, Doubt, Facing, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Pair, Pairs, Product, Task, run};
 use crate::math::exp2i;
-use crate::scaled::{checked_point, largest, moderate, times_power};
+use crate::scaled::{checked_point, range_guard, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
 use glam::{DVec2, DVec3};
@@ -23,23 +23,18 @@ use glam::{DVec2, DVec3};
 /// anchor of local coordinates is the first corner; `uv` are the barycentric weights of the second and the third.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
-    a: DVec3,
+    sides: Sides,
     b: DVec3,
     c: DVec3,
     /// `(b - a) x (c - a)` times a power of two, largest component in `[1, 2)`.
     scaled_normal: DVec3,
     /// What rounding to `normal` left, so that both together are within 2^-104.
     normal_rest: DVec3,
-    /// The power of two between `normal` and the product of the edges; NaN where that is too large, so that no
-    /// comparison in `f64` is certain.
-    area_scale: f64,
-    /// The largest coordinate of the edges, in size.
-    reach: f64,
     normal: DVec3,
     /// The world axis that the normal lies along exactly.
     axis: Option<u8>,
-    /// The power of two between `scaled_normal` and the product of the edges when `reach` is in `[1, 2)`.
-    normal_scale: f64,
+    /// The exponent between `scaled_normal` and the product of the edges when `reach` is in `[1, 2)`.
+    normal_power: i32,
     smooth: Option<Arc<[DVec3; 3]>>,
 }
 
@@ -55,22 +50,25 @@ impl Triangle {
         let c = checked_point("triangle corner", c.into())?;
         let reach = (b - a).abs().max((c - a).abs()).max_element();
         let (exact, edge_power, normal_power) = exact_normal(a, b, c);
-        let area_power = 2 * edge_power + normal_power;
         let normal = exact.map(|n| n.rounded());
         if normal.iter().all(|n| n.high == 0.0) {
             return Err(Error::Degenerate { vertices: [a, b, c] });
         }
+        let scaled_normal = DVec3::from_array(normal.map(|n| n.high));
         Ok(Triangle {
-            a,
+            sides: Sides::new(
+                Facing::new(a, scaled_normal),
+                [b - a, c - a],
+                reach,
+                2 * edge_power + normal_power,
+            ),
             b,
             c,
-            scaled_normal: DVec3::from_array(normal.map(|n| n.high)),
+            scaled_normal,
             normal_rest: DVec3::from_array(normal.map(|n| n.low)),
-            area_scale: if area_power < 1000 { times_power(1.0, area_power) } else { f64::NAN },
-            reach,
             normal: flat::unit(normal),
-            axis: flat::world_axis(DVec3::from_array(normal.map(|n| n.high))),
-            normal_scale: times_power(1.0, normal_power),
+            axis: flat::world_axis(scaled_normal),
+            normal_power,
             smooth: None,
         })
     }
@@ -95,7 +93,12 @@ impl Triangle {
 
     /// The corners.
     pub fn corners(&self) -> [DVec3; 3] {
-        [self.a, self.b, self.c]
+        [self.a(), self.b, self.c]
+    }
+
+    #[inline(always)]
+    fn a(&self) -> DVec3 {
+        self.sides.facing.anchor()
     }
 
     /// The geometric unit normal.
@@ -113,7 +116,7 @@ impl Triangle {
     /// # Errors
     /// As [`Triangle::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
-        let moved = Triangle::new(by.point(self.a), by.point(self.b), by.point(self.c))?;
+        let moved = Triangle::new(by.point(self.a()), by.point(self.b), by.point(self.c))?;
         match self.corner_normals() {
             Some([a, b, c]) => moved.with_normals(by.direction(a), by.direction(b), by.direction(c)),
             None => Ok(moved),
@@ -128,18 +131,13 @@ impl Triangle {
         if !ray.is_valid() {
             return None;
         }
-        let there = Relative::new(self.a, ray, self.reach);
+        let there = Relative::new(self.a(), ray, self.sides.reach);
         let span = there.interval(within);
-        let triangle = Triangle {
-            a: DVec3::ZERO,
-            b: (self.b - self.a) * there.unit,
-            c: (self.c - self.a) * there.unit,
-            reach: self.reach * there.unit,
-            area_scale: self.normal_scale * square_of_power(self.reach * there.unit),
-            smooth: None,
-            ..*self
-        };
-        match triangle.plainly(&there.ray, span) {
+        let [x, y, z] = self.sides.edges.0.map(|[first, second]| (first * there.unit, -second * there.unit));
+        let edges = [DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1)];
+        let reach = self.sides.reach * there.unit;
+        let power = 2 * crate::math::exponent(reach) + self.normal_power;
+        match Sides::new(self.sides.facing.at(DVec3::ZERO), edges, reach, power).plainly(&there.ray, span) {
             Ok(hit) => return there.hit(hit?, within),
             Err(Doubt { ended: false }) => {}
             Err(Doubt { ended: true }) => return None,
@@ -151,36 +149,61 @@ impl Triangle {
         }
         within.admit(meeting::meet(self, ray)?.t, 0, 0)
     }
+}
+
+/// What decides in `f64` whether and where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sides {
+    facing: Facing,
+    /// The edge to the second corner, and that to the third turned round: x, y, z.
+    edges: Pairs<3>,
+    /// The largest coordinate of the edges, in size.
+    reach: f64,
+    /// 128 u of it, or NaN where products may leave the range of the exponents.
+    slack: f64,
+    /// 16 times the power of two between the normal and the product of the edges; NaN where that is too large.
+    area_scale: f64,
+}
+
+impl Sides {
+    fn new(facing: Facing, [e, f]: [DVec3; 2], reach: f64, area_power: i32) -> Sides {
+        Sides {
+            facing,
+            edges: Pairs([[e.x, -f.x], [e.y, -f.y], [e.z, -f.z]]),
+            reach,
+            slack: (128.0 * U) * reach + range_guard(reach),
+            area_scale: if area_power < 1000 { times_power(16.0, area_power) } else { f64::NAN },
+        }
+    }
 
     #[inline(always)]
     fn plainly(&self, ray: &Ray, within: Interval) -> Verdict {
-        let (e1, e2) = (self.b - self.a, self.c - self.a);
-        let (s, d) = (self.a - ray.origin, ray.direction);
-        let r = d.cross(s);
-        let denominator = self.scaled_normal.dot(d);
-        let of_b = -e2.dot(r);
-        let of_c = e1.dot(r);
-        let of_a = denominator * self.area_scale - of_b - of_c;
+        let rough = Rough::new(&self.facing, ray);
+        let r = rough.moment();
+        let edges = |k: usize, r: f64| self.edges.get(k) * Pair::new(r, r);
+        let of_c_and_b = (edges(0, r.x) + edges(1, r.y)) + edges(2, r.z);
+        let of_a = rough.slope() * self.area_scale - (of_c_and_b.low() + of_c_and_b.high());
         // With E, S, D the largest coordinates of edges, s and d: a component of r is at most 2 D S and errs by
         // 6 u D S (differences, products, difference); its product with an edge errs by 42 u E D S (three terms:
         // 18 u from r, 24 u from the edge, the product and two additions). The product of the areas is at most
         // 6 E E D and errs by 5 u of that with the rounded normal. The third function adds both others and 2 u of
         // its terms: (84 + 36) u E D S + (30 + 6) u E E D at most.
-        let base = largest(d) * (largest(s) + self.reach);
-        let doubt = (128.0 * U) * self.reach * base;
-        let least = lesser(of_a, lesser(of_b, of_c));
-        let most = greater(of_a, greater(of_b, of_c));
-        // Beyond these neither under- nor overflow is excluded: with edges of up to 2^521, sums of products are at most 2^50
-        // times as large as the bound.
-        if !(moderate(base) & (doubt > LEAST_CERTAIN)) {
+        let (far, speed) = rough.largest();
+        let doubt = self.slack * (speed * (far + self.reach));
+        // With E in 2^-200..2^200, neither r nor any product leaves the range of the exponents, and what those lose that
+        // underflow is nothing against the bound.
+        const LEAST: u64 = exp2i(-500).to_bits();
+        if doubt.to_bits().wrapping_sub(LEAST) > exp2i(500).to_bits() - LEAST {
             return Err(Doubt { ended: false });
         }
-        if (least < -doubt) & (most > doubt) {
-            Ok(None)
-        } else if (least > doubt) | (most < -doubt) {
-            Rough::new(self.a, self.scaled_normal, ray).hit(within)
+        let (signs, positive) = (of_c_and_b.signs(), of_a > 0.0);
+        if Pair::new(doubt, doubt).is_below(of_c_and_b.abs()) & (of_a.abs() > doubt) {
+            if signs == if positive { 0 } else { 3 } { rough.hit(within) } else { Ok(None) }
         } else {
-            Err(Doubt { ended: false })
+            let (b, c) = (of_c_and_b.high(), of_c_and_b.low());
+            let least = lesser(of_a, lesser(b, c));
+            let most = greater(of_a, greater(b, c));
+            if (least < -doubt) & (most > doubt) { Ok(None) } else { Err(Doubt { ended: false }) }
         }
     }
 }
@@ -239,17 +262,17 @@ impl Task for EdgeSigns<'_> {
 impl Piece for Triangle {
     #[inline(always)]
     fn plane(&self) -> ExactPlane {
-        ExactPlane { anchor: self.a, normal: self.normal_sum(), axis: self.axis, offset: 0.0 }
+        ExactPlane { anchor: self.a(), normal: self.normal_sum(), axis: self.axis, offset: 0.0 }
     }
 
     fn exact_normal(&self) -> [Expansion; 3] {
-        exact_normal(self.a, self.b, self.c).0
+        exact_normal(self.a(), self.b, self.c).0
     }
 
     #[inline(always)]
     fn record<P: Product>(&self, at: &Meeting) -> Surface {
         // The hit is inside; what double-double leaves beside the corners is noise.
-        let Triangle { a, b, c, .. } = *self;
+        let [a, b, c] = self.corners();
         let point = flat::clamped(at.point(a), a.min(b).min(c), a.max(b).max(c));
         let uv = self.weights::<P>(at);
         let surface = Surface::new(at.t, point, at.local(), self.normal, at.error_radius(point)).with_uv(uv);
@@ -264,7 +287,7 @@ impl Piece for Triangle {
     }
 
     fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
-        Surface::new(hit.t(), self.a, DVec3::ZERO, self.normal, self.reach)
+        Surface::new(hit.t(), self.a(), DVec3::ZERO, self.normal, self.sides.reach)
     }
 }
 
@@ -282,15 +305,15 @@ impl Triangle {
         // gives beta = (l x e2)_k / n_k and gamma = (e1 x l)_k / n_k.
         let k = flat::dominant(self.scaled_normal);
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let power = flat::power_of(DVec3::splat(self.reach));
-        let (a, b, c) = (self.a.to_array(), self.b.to_array(), self.c.to_array());
+        let power = flat::power_of(DVec3::splat(self.sides.reach));
+        let [a, b, c] = self.corners().map(|p| p.to_array());
         let unit = exp2i(-power);
         let edge = |to: [f64; 3]| [i, j].map(|i| Double::difference(to[i], a[i]).scale_exact(unit));
         // In two steps: the unit of a place met from afar may be more than 2^1023 times as large.
         let shift = (at.power - power).clamp(-2000, 2000);
         let (first, second) = (exp2i(shift / 2), exp2i(shift - shift / 2));
         let l = [i, j].map(|i| at.local[i].scale_exact(first).scale_exact(second));
-        let area = self.normal_sum()[k].scale_exact(self.normal_scale);
+        let area = self.normal_sum()[k].scale_exact(times_power(1.0, self.normal_power));
         let inverse = 1.0 / area.high;
         let weight = |p: [Double; 2], q: [Double; 2]| {
             let (x, y) = (p[0].mul::<P>(q[1]), p[1].mul::<P>(q[0]));
@@ -305,7 +328,7 @@ impl Triangle {
 impl Primitive for Triangle {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match self.plainly(ray, within) {
+        match self.sides.plainly(ray, within) {
             Ok(hit) => hit,
             Err(_) => self.hit_carefully(ray, within),
         }
@@ -322,8 +345,9 @@ impl Primitive for Triangle {
     }
 
     fn bounds(&self) -> Option<Aabb> {
-        let least = self.a.min(self.b).min(self.c);
-        let most = self.a.max(self.b).max(self.c);
+        let [a, b, c] = self.corners();
+        let least = a.min(b).min(c);
+        let most = a.max(b).max(c);
         Some(flat::outward(DVec3::ZERO, least, most))
     }
 
@@ -332,12 +356,6 @@ impl Primitive for Triangle {
     }
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
-}
-
-/// The square of the power of two in `[x / 2, x]`.
-fn square_of_power(x: f64) -> f64 {
-    let power = exp2i(crate::math::exponent(x).clamp(-1022, 0));
-    power * power
 }
 
 #[inline(always)]
@@ -406,7 +424,7 @@ mod tests {
         let t = near.hit(&ray, Interval::FORWARD).unwrap().t();
         for power in [-480, -300, 300, 500] {
             let scale = exp2i(power);
-            let far = Triangle::new(near.a * scale, near.b * scale, near.c * scale).unwrap();
+            let far = Triangle::new(near.a() * scale, near.b * scale, near.c * scale).unwrap();
             for speed in [-480, -300, 300, 480] {
                 let there = Ray::new(ray.origin * scale, ray.direction * exp2i(speed));
                 let found = far.hit(&there, Interval::FORWARD).unwrap().t();
@@ -441,7 +459,7 @@ mod tests {
                 target += random.in_cube() * (size * random.magnitude(-18.0, -8.0));
             }
             let ray = Ray::new(origin, target - origin);
-            let Ok(found) = triangle.plainly(&ray, Interval::FORWARD) else {
+            let Ok(found) = triangle.sides.plainly(&ray, Interval::FORWARD) else {
                 count[0] += u32::from(case < 4000);
                 continue;
             };

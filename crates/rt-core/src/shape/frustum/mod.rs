@@ -228,11 +228,11 @@ impl Frustum {
             Rough::Doubt => return self.hit_in_doubt::<SLOPED>(ray, within),
             Rough::Chord(chord) => chord,
         };
-        match chord.span() {
+        match chord.crossings() {
             None => self.hit_in_doubt::<SLOPED>(ray, within),
-            Some(Span::Miss) => None,
-            Some(Span::Crossings([first, last])) => {
-                self.crossing(&first, ray, within, 0).or_else(|| self.crossing(&last, ray, within, 1))
+            Some(None) => None,
+            Some(Some([first, last])) => {
+                self.crossing(&first(), ray, within, 0).or_else(|| self.crossing(&last(), ray, within, 1))
             }
         }
     }
