@@ -17,7 +17,7 @@
 //! Outside the cylinder of radius R. With `E = u S (19 + 3 K^2) > (5.8 K + 16) u S`, `|n|^2 R^2 - (n.w)^2` errs by less than
 //! `(R E + E^2 / 4) |n|^2`, as long as that decides anything: `2 R E |n|^2` for `E < 4 R`.
 //!
-//! Cylinders: that number is D, and B / A errs by `(14 K + 18) u |w| / |n|`, less than 2.1 E / |n|. Where D is more than 2^10
+//! Cylinders: that number is D, and B / A (but for what `along_cylinder` mends) errs by `(14 K + 18) u |w| / |n|`, less than 2.1 E / |n|. Where D is more than 2^10
 //! times its bound, `sqrt(D) / A` errs by 2^-12 of itself and `B / A` by 2.1 2^-11 of that.
 //!
 //! Cones: the vector in D errs by `(10 + 34 |k|) u S |d|` with its own roundings. With V its length, at most
@@ -138,7 +138,7 @@ impl Numbers {
             let clearer = inside > (2.0 * CLEAR * CLEARER) * doubt;
             let margin = half * if clearer { exp2i(-16) } else { exp2i(-8) };
             let (enter, leave) = (middle - half, middle + half);
-            return Rough::Chord(Chord {
+            let chord = Chord {
                 enter,
                 leave,
                 margins: [margin; 2],
@@ -148,7 +148,11 @@ impl Numbers {
                 z_growth,
                 height,
                 error,
-            });
+            };
+            if z_growth * z_growth > 8.0 * square {
+                return self.along_cylinder(w, d, chord, sqrt(inside));
+            }
+            return Rough::Chord(chord);
         }
         if z_growth * z_growth > 8.0 * square {
             return self.along_axis(w, d);
@@ -190,6 +194,23 @@ impl Numbers {
 }
 
 impl Numbers {
+    /// [`chord`](Numbers::chord) for a cylinder and a line at less than 20 degrees from its axis: `root` is `sqrt(D)`.
+    ///
+    /// B / A errs by the rounding of d', 3 u |d|, times `|w'| / |d'|^2`: in length along the ray by 3 u K^2 |w'|, which is of the order of u S
+    /// over the cosine, 1 / K, only where the ray is far inside. A step of Newton's method, whose slope is `-+2 sqrt(D)`,
+    /// gives the digits of the place itself.
+    #[inline(never)]
+    fn along_cylinder(&self, w: DVec3, d: DVec3, chord: Chord, root: f64) -> Rough {
+        let half = 0.5 / root;
+        let rest = |t: f64| {
+            let p = w + d * t;
+            let away = p - self.axis * self.axis.dot(p);
+            (away.dot(away) - self.base_radius * self.base_radius) * half
+        };
+        let (enter, leave) = (chord.enter + rest(chord.enter), chord.leave - rest(chord.leave));
+        Rough::Chord(Chord { enter, leave, ..chord })
+    }
+
     /// [`chord`](Numbers::chord) for a cone and a line nearly parallel to its side, from not far away.
     ///
     /// The coefficients are small there, and their errors are not. One crossing is `q / A`, `q = -B -+ sqrt(D)`, the other `C / q`: q
