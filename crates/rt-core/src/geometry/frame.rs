@@ -18,6 +18,9 @@ const U: f64 = exp2i(-53);
 /// The absolute part of a [`Window`] for an origin at zero, in kernel coordinates.
 const WINDOW: f64 = exp2i(-24);
 
+/// Origins farther away than this, in kernel coordinates, are not followed: they are known to less than 2^-13 of the scene.
+const FARTHEST: f64 = exp2i(40);
+
 /// The map from the world to kernel coordinates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
@@ -140,7 +143,7 @@ impl Frame {
     /// The windows of ties that [`enter`](Frame::enter) gives for valid rays from this point.
     pub fn windows(&self, origin: DVec3) -> Windows {
         let far = largest((origin - self.center) * exp2i(-self.exponent));
-        let far = if self.inhabited && far < exp2i(60) { Some((far + 1.0) * WINDOW) } else { None };
+        let far = if self.inhabited && far < FARTHEST { Some((far + 1.0) * WINDOW) } else { None };
         Windows { exponent: self.exponent, far }
     }
 
@@ -163,8 +166,7 @@ impl Frame {
         let direction = ray.direction * exp2i(-direction_exponent);
         let factor = exp2i(power);
         let far = origin.abs().max_element();
-        // Beyond, the error would exceed the scene and squares of it would near the limits.
-        if !(far < exp2i(60)) {
+        if !(far < FARTHEST) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
         let absolute = (far + 1.0) * WINDOW;
@@ -173,8 +175,8 @@ impl Frame {
         let mut start = within.min * factor - absolute;
         if !(start.abs() * 2.0 + far <= 8.0) {
             // Begin where the ray enters the box of the scene, which is [-1, 1] with room for all roundings: the
-            // origin's (u |o'|), that of the difference and the quotient (2 u (|o'| + 2)), and margin.
-            let room = 1.0 + exp2i(-10) + 8.0 * U * far;
+            // origin's (u |o'|), that of the difference and the quotient (2 u (|o'| + 2)), at most 2^-11 together.
+            let room = 1.0 + exp2i(-10);
             let mut exit = f64::INFINITY;
             for axis in 0..3 {
                 let (o, d) = (origin[axis], direction[axis]);
@@ -386,6 +388,69 @@ mod tests {
                 assert!(limit - t >= t.abs() * exp2i(-31) + 0.5 * absolute, "{t} {limit}");
             }
         }
+    }
+
+    /// A ray that meets the box of the scene begins before it does, not long before, and its places and parameters are those
+    /// of the world; one that passes it is none.
+    #[test]
+    fn rays_begin_where_they_enter() {
+        use crate::testing::Random;
+        let mut random = Random::new(1);
+        let (mut none, mut some) = (0, 0);
+        for case in 0..4000 {
+            let (corner, size) = (random.in_cube() * 3.0, random.magnitude(-2.0, 2.0));
+            let bounds = Aabb::new(corner, corner + DVec3::new(size, size * 0.9, size * 0.3));
+            let frame = Frame::around(1, [Some(bounds)].into_iter());
+            let unit = exp2i(frame.exponent);
+            let (center, distance) = (bounds.center(), unit * random.magnitude(0.5, 11.9));
+            assert!(largest(bounds.max - center) <= unit);
+            let origin = center + random.direction() * distance;
+            let inside = random.in_cube();
+            // At a place in the scene's box, or beside it: how far outside, in units of the scene, along one axis.
+            let beyond = if case % 3 == 0 { 1.0 + random.magnitude(-2.5, 0.0) } else { 0.99 };
+            let axis = case % 7 % 3;
+            let mut target = inside.to_array();
+            target[axis] = beyond * random.sign();
+            let target = center + DVec3::from_array(target) * unit;
+            let mut direction = (target - origin) * random.magnitude(-3.0, 3.0);
+            if case % 3 == 0 {
+                // Across that axis nothing changes: the line stays beside the box.
+                direction =
+                    DVec3::from_array(core::array::from_fn(|k| if k == axis { 0.0 } else { direction[k] }));
+            }
+            let origin = if case % 3 == 0 {
+                DVec3::from_array(core::array::from_fn(|k| if k == axis { target[k] } else { origin[k] }))
+            } else {
+                origin
+            };
+            let ray = Ray::new(origin, direction);
+            let (local, window) = frame.enter(&ray, Interval::FORWARD);
+            if beyond > 1.0 + exp2i(-9) {
+                none += u32::from(local.is_none());
+                continue;
+            }
+            let Some(local) = local else { panic!("{ray:?} {bounds:?}") };
+            some += 1;
+            let far = largest(origin - center) / unit;
+            let t = (target - origin).dot(direction) / direction.length_squared();
+            // The parameter of the target, in kernel coordinates from where the ray begins.
+            let along = t * local.factor + local.shift - (far + 1.0) * WINDOW;
+            let off = local.origin + local.direction * along - (target - center) / unit;
+            assert!(largest(off) <= largest(local.error) + exp2i(-49) * far, "{off} {ray:?}");
+            assert!(largest(local.error) <= exp2i(-48) * (far + 1.0));
+            let limit = f64::from(local.limit(t));
+            assert!(limit >= 0.0 && limit - along <= 4.0 * (far + 1.0) * WINDOW + exp2i(-20) * along.abs());
+            // Begun in the box: nowhere else than where it enters, if it does not start inside.
+            if far > 8.0 {
+                let most = largest(local.origin);
+                assert!((1.0..1.0 + exp2i(-9)).contains(&most), "{most} {ray:?}");
+            }
+            let absolute = (far + 1.0) * WINDOW / local.factor;
+            assert!((window.absolute / absolute - 1.0).abs() < 1e-9);
+            let same = frame.windows(origin).of(direction).absolute;
+            assert!(same.to_bits() == window.absolute.to_bits(), "{same} {window:?}");
+        }
+        assert!(none > 1000 && some > 2600, "{none} {some}");
     }
 
     #[test]

@@ -311,3 +311,34 @@ fn products_of_the_careful_solver() {
     }
     assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
 }
+
+/// A cubic's lonely root and the factor of the others, to what plain arithmetic can tell: of like and of much smaller size,
+/// real and complex.
+#[test]
+fn cubics_fall_into_factors() {
+    let mut random = Random::new(7);
+    for case in 0..6000 {
+        let lonely = random.uniform(0.5, 2.0) * random.sign();
+        // The others, nearer to each other than the lonely one is to them.
+        let (middle, gap) = if case % 2 == 0 {
+            let middle = -lonely * random.uniform(0.8, 3.0);
+            (middle, 0.3 * middle.abs() * random.uniform(0.2, 1.0))
+        } else {
+            let size = random.magnitude(-7.0, -1.0);
+            (size * random.sign(), size * random.uniform(0.2, 1.0))
+        };
+        let square = gap * gap * if case % 4 < 2 { 1.0 } else { -1.0 };
+        let (linear, constant) = (-2.0 * middle, middle * middle - square);
+        let (a, b, d) = (linear - lonely, constant - lonely * linear, -lonely * constant);
+        let (x, rest) = split::cubic(d, b, a);
+        let off = [
+            x / lonely - 1.0,
+            (rest.constant - constant) / (middle * middle + gap * gap),
+            (rest.linear - linear) / (middle.abs() + gap),
+        ];
+        assert!(
+            off.iter().all(|off| off.abs() < 1e-12),
+            "{lonely} {linear} {constant}: {x} {rest:?} {off:?}"
+        );
+    }
+}

@@ -546,5 +546,34 @@ mod tests {
             }
         }
         assert!(count[0] == 0 && count[1] == 1000 && count[2] > 500, "{count:?}");
+        // Slanted lines past the rim, outside it all the way through the slab and yet near to the centre.
+        let mut beside = 0;
+        for case in 0..4000 {
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, 0.25).unwrap();
+            let [x, y, z] = torus.frame.map(|axis| axis.high());
+            let turn = random.uniform(0.0, core::f64::consts::TAU);
+            let (out, sideways) =
+                (x * libm::cos(turn) + y * libm::sin(turn), y * libm::cos(turn) - x * libm::sin(turn));
+            let (inward, aside) = (random.uniform(0.0, 2.0), random.uniform(-1.0, 1.0));
+            // Through the upper side of the slab and nearest to the axis there or, on the way up again, at the lower one; just
+            // outside the rim or far from it.
+            let end = if case % 2 == 0 { 0.25 } else { -0.25 };
+            let gap = random.magnitude(-15.0, -0.5);
+            let along =
+                (z - out * inward * if end > 0.0 { 1.0 } else { -1.0 } + sideways * aside).normalize();
+            let place = torus.center + out * (1.25 + gap) + z * end;
+            let scaled = torus.scaled(&Ray::new(place - along * 3.0, along)).unwrap();
+            let other = place - along * (2.0 * end / along.dot(z));
+            let rho = |p: DVec3| (p - torus.center - z * (p - torus.center).dot(z)).length();
+            // Nearest to the axis inside the slab it may be anywhere.
+            let inside = (place - torus.center).dot(along - z * along.dot(z)) * end > 0.0;
+            let Some((passes, crossings)) = run(Passes(&torus, &scaled)) else { continue };
+            assert!(!passes || crossings == 0);
+            if gap > 1e-13 && rho(other) > rho(place) && !inside {
+                beside += 1;
+                assert!(passes, "{torus:?} {gap} {case}");
+            }
+        }
+        assert!(beside > 500, "{beside}");
     }
 }
