@@ -461,3 +461,24 @@ fn one_ray_of_a_packet_goes_on() {
         }
     }
 }
+
+/// A sphere met from 250 radii away by a ray whose direction is half the greatest number long: accelerated as plainly.
+#[test]
+fn the_longest_directions() {
+    let shapes: [Shape; 2] = [
+        rt_core::shape::Sphere::new([-73.0, -40.0, 1.2e60], 3.6e152).unwrap().into(),
+        rt_core::shape::Plane::new([99.0, 121.0, 121.0], [1.0, 1.0, 1.0]).unwrap().into(),
+    ];
+    let build = |accelerated: bool| {
+        let mut builder = Geometry::builder().accelerated(accelerated);
+        shapes.iter().for_each(|shape| _ = builder.push(shape.clone()));
+        builder.build()
+    };
+    for (x, y, z) in [(105.6, 8.8e52, 9.2e307), (0.0, 0.0, 4.4e307), (1e305, 0.0, f64::MAX)] {
+        let ray = Ray::new([24.75, 3.9e-13, -9.08e154], [x, y, z]);
+        let [fast, plain] =
+            [true, false].map(|accelerated| build(accelerated).nearest(&ray, Interval::FORWARD));
+        assert_eq!(fast, plain);
+        assert_eq!(plain.map(|found| found.object), Some(0));
+    }
+}

@@ -88,12 +88,18 @@ impl Windows {
         let direction_exponent = exponent(largest(direction));
         let power = direction_exponent - self.exponent;
         match self.far {
-            Some(far) if direction_exponent >= -1000 && (-1000..=1000).contains(&power) => {
+            Some(far) if is_middling(direction_exponent) && is_middling(power) => {
                 Window { absolute: far * exp2i(-power) }
             }
             _ => Window { absolute: 0.0 },
         }
     }
+}
+
+/// Whether two to this power, and to its opposite, are far from the limits of `f64`.
+#[inline(always)]
+fn is_middling(power: i32) -> bool {
+    (-1000..=1000).contains(&power)
 }
 
 /// Whether box tests can hold this: finite, in order, and far from the limits of `f64`.
@@ -157,8 +163,8 @@ impl Frame {
         }
         let direction_exponent = exponent(ray.direction.abs().max_element());
         let power = direction_exponent - self.exponent;
-        // Not for directions that are not normal numbers, or whose parameters would overflow.
-        if direction_exponent < -1000 || !(-1000..=1000).contains(&power) {
+        // Not for directions that are not normal numbers or whose reciprocal is none, nor for parameters that would overflow.
+        if !(is_middling(direction_exponent) && is_middling(power)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
         let scale = exp2i(-self.exponent);
@@ -388,6 +394,73 @@ mod tests {
                 assert!(limit - t >= t.abs() * exp2i(-31) + 0.5 * absolute, "{t} {limit}");
             }
         }
+    }
+
+    /// Directions next to the greatest and least numbers, and parameters there, meet every box; others are followed.
+    #[test]
+    fn directions_of_extreme_length() {
+        for (size, speed, followed) in [
+            (1.0, 1.0, true),
+            (1.0, exp2i(1000), true),
+            (1.0, exp2i(1001), false),
+            (1.0, exp2i(1023), false),
+            (1e100, exp2i(1023) * 1.5, false),
+            (1.0, exp2i(-1000), false),
+            (exp2i(-10), exp2i(-1000), true),
+            (exp2i(-10), exp2i(-1001), false),
+            (exp2i(-10), f64::from_bits(1), false),
+            (exp2i(-300), exp2i(710), false),
+            (exp2i(300), exp2i(-710), false),
+        ] {
+            let bounds = Aabb::new(DVec3::splat(-size), DVec3::splat(size));
+            let frame = Frame::around(1, [Some(bounds)].into_iter());
+            let ray = Ray::new([0.0, 0.0, -3.0 * size], DVec3::new(0.0, 0.25, 1.0) * speed);
+            let (local, window) = frame.enter(&ray, Interval::FORWARD);
+            let local = local.unwrap();
+            assert_eq!(local.shift.is_finite(), followed, "{size:e} {speed:e}");
+            assert_eq!(window.absolute > 0.0, followed);
+            assert_eq!(frame.windows(ray.origin).of(ray.direction).absolute, window.absolute);
+            assert!(!followed || local.direction == DVec3::new(0.0, 0.25, 1.0));
+        }
+    }
+
+    /// What a packet keeps of each ray: its place, its end, and an error that holds for all.
+    #[test]
+    fn a_packet_keeps_its_rays() {
+        let mut side = Side::EMPTY;
+        let of = |i: usize, error: DVec3| LocalRay {
+            origin: DVec3::new(0.5, -0.25, 0.125) * (1 + i) as f64,
+            error,
+            direction: DVec3::new(1.0, -0.5, 1.5) / (1 + i) as f64,
+            factor: (2 + i) as f64,
+            shift: 0.25 * i as f64,
+        };
+        for i in 0..PACKET {
+            let error = DVec3::AXES[i % 3] * if i == 9 { 3e-5 } else { 1e-7 } + DVec3::splat(1e-5);
+            side.set(i, &of(i, error), i as f64);
+        }
+        assert!((side.error - 6e-5).abs() < 1e-15, "{}", side.error);
+        for i in 0..PACKET {
+            let ray = of(i, DVec3::ZERO);
+            for k in 0..3 {
+                assert_eq!(side.origin[i / 8][k][i % 8], ray.origin[k] as f32);
+                assert_eq!(side.direction[i / 8][k][i % 8], ray.direction[k] as f32);
+            }
+            assert_eq!(side.limit[i / 8][i % 8], ray.limit(i as f64));
+            assert_eq!(side.limit_of(i, 0.75), ray.limit(0.75));
+            let true_end = 0.75 * ray.factor + ray.shift;
+            assert!((true_end..true_end * (1.0 + 1e-6)).contains(&f64::from(ray.limit(0.75))));
+        }
+        side.cut(11, 0.5);
+        assert_eq!(side.limit[1][3], of(11, DVec3::ZERO).limit(0.5));
+        assert_eq!(side.limit[1][4], of(12, DVec3::ZERO).limit(12.0));
+        side.repeat(30, 11);
+        for k in 0..3 {
+            assert_eq!(side.origin[3][k][6], side.origin[1][k][3]);
+            assert_eq!(side.direction[3][k][6], side.direction[1][k][3]);
+            assert_ne!(side.origin[3][k][5], side.origin[1][k][3]);
+        }
+        assert_eq!(side.limit[3][6], f32::NEG_INFINITY);
     }
 
     /// A ray that meets the box of the scene begins before it does, not long before, and its places and parameters are those
