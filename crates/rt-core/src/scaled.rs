@@ -260,6 +260,36 @@ mod tests {
         }
     }
 
+    /// Squares of what is let pass are far from the limits; the guard is open between its ends only.
+    #[test]
+    fn lengths_whose_squares_are_in_range() {
+        let (least, most) = (exp2i(-200), exp2i(200));
+        for (length, passes) in [
+            (1.0, true),
+            (least.next_up(), true),
+            (most.next_down(), true),
+            (least, false),
+            (most, false),
+            (0.0, false),
+            (f64::INFINITY, false),
+            (f64::NAN, false),
+        ] {
+            assert_eq!(range_guard(length) == 0.0, passes, "{length:e}");
+            assert_eq!(range_guard(length).is_nan(), !passes, "{length:e}");
+        }
+        let (least, most) = (exp2i(-400), exp2i(400));
+        for (square, in_range) in [
+            (1.0, true),
+            (least, true),
+            (least.next_down(), false),
+            (most, false),
+            (most.next_down(), true),
+            (-1.0, false),
+        ] {
+            assert_eq!(moderate(square), in_range, "{square:e}");
+        }
+    }
+
     /// In another unit a crossing has its margin in that unit too.
     #[test]
     fn a_crossing_in_another_unit() {

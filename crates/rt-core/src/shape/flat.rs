@@ -272,6 +272,11 @@ mod tests {
             (0.0, 1.125, (false, false)),
             (1.125, 2.0, (false, false)),
             (0.0, 0.875, (false, false)),
+            // An end just as far away as the parameter may err.
+            (0.75, 9.0, (false, false)),
+            (0.0, 1.25, (false, false)),
+            (1.25, 9.0, (false, false)),
+            (0.0, 0.75, (false, false)),
         ] {
             assert_eq!(rough.sides(Interval::new(min, max)), expected, "{min} {max}");
             assert_eq!(at(1.0, 0.25, false).sides(Interval::new(min, max)), (false, false));

@@ -281,7 +281,7 @@ fn products_a_quartic() {
     assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
 }
 
-/// The same for the careful solver alone.
+/// The same for the careful solver alone, to less than a step more for every other polynomial.
 #[test]
 fn products_of_the_careful_solver() {
     struct Careful([f64; 5]);
@@ -292,10 +292,10 @@ fn products_of_the_careful_solver() {
         }
     }
     let mut random = Random::new(8);
-    let measured = [403.4, 359.5, 352.1, 381.7];
-    let mut found = [0.0; 4];
-    for case in 0..2000 {
-        let kind = case % 4;
+    let measured = [403.1, 358.4, 353.2, 381.1, 352.2, 366.0, 448.1, 338.7];
+    let mut found = [0.0; 8];
+    for case in 0..4000 {
+        let kind = case % 8;
         let near = random.magnitude(-9.0, -2.0);
         let tiny = random.magnitude(-40.0, -3.0);
         let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
@@ -304,12 +304,17 @@ fn products_of_the_careful_solver() {
             0 => [a, b, c, d],
             1 => [a, a + near, c, d],
             2 => [a, a + near, a - 2.0 * near, d],
-            _ => [a, b * tiny, c * tiny * tiny, d],
+            3 => [a, b * tiny, c * tiny * tiny, d],
+            // Far out and in; exact double and triple roots; and double roots but for the last digits.
+            4 => [a * 1e200, b, c * 1e-60, d * 1e-90],
+            5 => [0.5, 0.5, c, d],
+            6 => [0.25, 0.25, 0.25, d],
+            _ => [a, a * (1.0 + 1e-12), c, d],
         };
         let (_, products) = counted(Careful(expanded(&list, &[], 1.0)));
         found[kind] += products as f64 / 500.0;
     }
-    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.003 * measured), "{found:?}");
 }
 
 /// A cubic's lonely root and the factor of the others, to what plain arithmetic can tell: of like and of much smaller size,

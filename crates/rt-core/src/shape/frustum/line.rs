@@ -221,7 +221,7 @@ mod tests {
         // side of a closed one, and that from a cap.
         type Expected = (Option<[(f64, u32); 2]>, (f64, u32), (f64, u32));
         type Case = (f64, f64, [f64; 4], [f64; 2], Expected);
-        let cases: [Case; 12] = [
+        let cases: [Case; 13] = [
             // Up and down between the caps, or through them.
             (0.5, 0.1, across, [-1.0, 1.0], (Some([(-1.0, SIDE), (1.0, SIDE)]), (1.0, SIDE), (1.0, SIDE))),
             (0.5, 1.0, across, [-1.0, 1.0], (Some([(-0.5, BASE), (0.5, TOP)]), (0.5, TOP), (0.5, TOP))),
@@ -231,6 +231,8 @@ mod tests {
             (2.5, 1.0, across, [-1.0, 1.0], (None, (-1.5, TOP), (-1.5, TOP))),
             (0.5, 1.0, [0.0, 1.0, 1.0, -1.0], [5.0, 5.0], (None, (never, SIDE), (never, SIDE))),
             (0.5, 1.0, [0.0, 1.0, 0.0, 0.0], [0.0, 0.0], (None, (never, SIDE), (never, SIDE))),
+            // Through the very rim.
+            (0.5, 1.0, across, [0.5, 1.0], (None, (0.5, TOP), (0.5, TOP))),
             // Along the slab, in it and in or beside a cap.
             (0.5, 0.0, across, [-1.0, 1.0], (Some([(-1.0, SIDE), (1.0, SIDE)]), (1.0, SIDE), (1.0, SIDE))),
             (1.0, 0.0, across, [-1.0, 1.0], (None, (never, BASE), (never, TOP))),

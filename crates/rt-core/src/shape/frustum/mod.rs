@@ -17,6 +17,8 @@
 mod line;
 mod rough;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
