@@ -482,3 +482,49 @@ fn the_longest_directions() {
         assert_eq!(plain.map(|found| found.object), Some(0));
     }
 }
+
+/// Cones and cylinders whose radius is anything up to 1e60 times their height, or the other way round: both crossings of a ray
+/// may be one as far as can be told, but then it is no crossing beside the shape. Accelerated as plainly.
+#[cfg(feature = "testing")]
+#[test]
+fn flat_cones_and_needles() {
+    let check = |shape: Shape, ray: Ray| {
+        let build = |accelerated: bool| {
+            let mut builder = Geometry::builder().accelerated(accelerated);
+            builder.push(shape.clone());
+            builder.build()
+        };
+        let [fast, plain] =
+            [true, false].map(|accelerated| build(accelerated).nearest(&ray, Interval::FORWARD));
+        assert_eq!(fast, plain, "{shape:?} {ray:?}");
+    };
+    // Ten radii from the axis.
+    let (base, top) =
+        ([51.29296875, -93.88671875, -113.66015625], [51.29296875, -93.88671875, -173.27734375]);
+    let cone = Cone::open(base, 1.2884779604201031e35, top, 106.49609375).unwrap();
+    let origin = [-1.7296495718327678e36, -7.115392158729815e35, -1.0417835958088987e36];
+    check(cone.into(), Ray::new(origin, [0.0, 0.0, 60.10546875]));
+    let mut random = rt_core::testing::Random::new(1);
+    for case in 0..60_000 {
+        let mut point = || random.in_cube() * 128.0;
+        let (a, b, near) = (point(), point(), point());
+        let b = if case % 2 == 0 { a + DVec3::AXES[case / 2 % 3] * b.x } else { b };
+        let exponent = random.uniform(9.0, 60.0);
+        let large = random.magnitude(exponent, exponent + 1.0);
+        let (l, m) = if case % 4 < 2 { (near.x.abs(), large) } else { (large, near.x.abs()) };
+        let far = random.magnitude(0.0, exponent);
+        let shape: Shape = match case % 5 {
+            0 => Cone::new(a, l, b, m).unwrap().into(),
+            1 => Cylinder::new(a, b, large).unwrap().into(),
+            2 => Cylinder::open(a, a + (b - a) * far, near.x.abs()).unwrap().into(),
+            _ => Cone::open(a, l, b, m).unwrap().into(),
+        };
+        let origin = if case % 3 == 0 { near } else { random.in_cube() * far * 128.0 };
+        let direction = match case % 7 {
+            0 => a - origin,
+            1 | 2 => DVec3::AXES[case % 3] * random.sign(),
+            _ => random.in_cube() * 128.0,
+        };
+        check(shape, Ray::new(origin, direction));
+    }
+}
