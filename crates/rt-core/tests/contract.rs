@@ -726,6 +726,7 @@ enum Fault {
     None,
     Panic,
     InvalidRay,
+    InvalidRayCrossed,
     OutsideInterval,
     SplitInterval,
     HitAgain,
@@ -794,6 +795,9 @@ impl Primitive for Broken {
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
         let mut hits = Vec::new();
         self.sphere.crossings(ray, within, &mut |hit| hits.push(hit));
+        if self.fault == Fault::InvalidRayCrossed && !ray.is_valid() {
+            hits.extend(Interval::LINE.admit(1.0, 0, 0));
+        }
         if self.fault == Fault::Odd && hits.len() == 2 {
             hits.pop();
         }
@@ -845,6 +849,7 @@ fn broken_shapes_are_found() {
     let expected = [
         (Panic, "no panic"),
         (InvalidRay, "no panic"),
+        (InvalidRayCrossed, "no panic"),
         (OutsideInterval, "an interval that"),
         (SplitInterval, "a split interval"),
         (HitAgain, "an interval that"),

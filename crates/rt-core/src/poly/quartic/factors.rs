@@ -267,7 +267,7 @@ pub(in super::super) fn quadratic<P: Product>(n: f64, m: f64, l: f64) -> Option<
         return None;
     }
     let mut roots = Roots::default();
-    found.iter().for_each(|root| roots.insert(root.x.to_f64() + 0.0, root.multiplicity));
+    found.iter().for_each(|root| roots.insert(root.x.to_f64(), root.multiplicity));
     Some(roots)
 }
 

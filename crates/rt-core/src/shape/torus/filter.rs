@@ -359,6 +359,8 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
     }
     // Halving alone comes to an end after 53 steps and a few, Newton's method after four or five.
     for _ in 0..60 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let Value { value, slope, error } = line.value(torus, x);
         if (value < 0.0) == low.inside {
             a = x;
@@ -397,6 +399,8 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     // Newton's method may first run far beyond and come back by a quarter of the way a step, as for y^4: 120 such steps are
     // 2^-49 of the way. A step of 2^-30 y leaves the square of that.
     for _ in 0..120 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let cubic = 4.0 * node.x + y;
         let value = node.value + y * y * (node.bend + y * cubic);
         let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
@@ -542,10 +546,12 @@ mod tests {
             assert!(!passes || crossings == 0, "{torus:?} {ray:?}");
             match case % 4 {
                 0 => count[usize::from(passes)] += 1,
+                // Along the axis, as near to the edge of the hole as can be told.
+                1 if rho < 0.75 - 1e-12 => assert!(passes, "{torus:?} {rho}"),
                 _ => count[2] += u32::from(passes),
             }
         }
-        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 500, "{count:?}");
+        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 250, "{count:?}");
         // Slanted lines past the rim, outside it all the way through the slab and yet near to the centre.
         let mut beside = 0;
         for case in 0..4000 {

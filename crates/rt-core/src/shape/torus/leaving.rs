@@ -260,6 +260,8 @@ fn refine<P: Product>(cubic: &Cubic, low: &Node, high: &Node) -> Double {
     let mut y = 0.5 * (a + b);
     // Roughly first. Halving alone takes 53 steps and a few.
     for _ in 0..64 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let (value, slope) = cubic.rough(y);
         if (value < 0.0) == low.inside {
             a = y;
