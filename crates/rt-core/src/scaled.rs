@@ -111,13 +111,11 @@ pub(crate) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, E
     Ok(value)
 }
 
-/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it.
+/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it: the first
+/// follows from the second, since the ends are numbers themselves.
 #[inline(always)]
 pub(crate) fn admit(within: Interval, t: Double, part: u32, root: u32) -> Option<Hit> {
-    // `t` against an end: exact, since `high` is the nearest number to the sum.
-    let after = t.high > within.min || (t.high == within.min && t.low > 0.0);
-    let before = t.high < within.max || (t.high == within.max && t.low < 0.0);
-    if after && before { within.admit(t.high, part, root) } else { None }
+    within.admit(t.high, part, root)
 }
 
 /// The exit of a ray that starts on the shape and runs inside: a crossing at or before the start is the start's

@@ -709,8 +709,23 @@ fn turned_cuboids() {
         let turn = Similarity::IDENTITY.rotated([1.0, 2.0, -0.5], degrees).unwrap();
         let turn = turn.translated([1e4, -3.0, 0.5]).unwrap();
         let cuboid = rt_core::shape::Cuboid::new([-1.0, -2.0, -0.5], [1.0, 2.0, 0.5]).unwrap();
-        let shape = cuboid.transformed(&turn).unwrap();
+        let shape: Shape = cuboid.transformed(&turn).unwrap().into();
         check_primitive(&shape, &Effort::new(7, 1000).closed()).unwrap_or_else(|failure| panic!("{failure}"));
+        // From next to the least numbers to the greatest, the length of the direction changes the parameter alone, if not to
+        // the last bit.
+        let ray = Ray::new([1e4 + 5.0, -2.5, 0.25], [-1.0, 0.0625, 0.125]);
+        let hits = crossings(&shape, &ray);
+        assert_eq!(hits.len(), 2);
+        for power in [-1018, -1000, -950, -900, -500, 500, 950, 1000, 1010] {
+            let unit = libm::scalbn(1.0, power);
+            let faster = Ray::new(ray.origin, ray.direction * unit);
+            let (a, b) = (crossings(&shape, &faster), shape.hit(&faster, Interval::FORWARD));
+            assert_eq!((a.len(), b.map(|b| b.t())), (2, a.first().map(|a| a.t())), "{power}");
+            for (a, hit) in a.iter().zip(&hits) {
+                assert_eq!(a.part(), hit.part(), "{power}");
+                assert!((a.t() * unit / hit.t() - 1.0).abs() < 1e-15, "{power}");
+            }
+        }
     }
 }
 

@@ -301,6 +301,19 @@ proptest! {
     }
 }
 
+#[test]
+fn shapes_are_counted_as_they_are_added() {
+    let mut builder = Geometry::builder();
+    for i in 0..5 {
+        assert_eq!(builder.push(Sphere::new([f64::from(i), 0.0, 0.0], 0.25).unwrap()), i);
+    }
+    let geometry = builder.add(Sphere::new([5.0, 0.0, 0.0], 0.25).unwrap()).build();
+    for i in 0..6 {
+        let ray = Ray::new([f64::from(i), 0.0, -3.0], [0.0, 0.0, 1.0]);
+        assert_eq!(geometry.nearest(&ray, Interval::FORWARD).map(|found| found.object), Some(i));
+    }
+}
+
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
 #[test]
 fn packets_of_rays_that_graze_spheres() {
@@ -315,7 +328,7 @@ fn packets_of_rays_that_graze_spheres() {
             builder.push(Sphere::new(unit(i) * scale + offset, radius).unwrap());
         }
         let geometry = builder.build();
-        for (far, count) in [(0.0, 32), (1.5, 32), (50.0, 21), (1e4, 16)] {
+        for (far, count) in [(-0.3, 32), (0.0, 32), (1.5, 32), (50.0, 21), (1e4, 16)] {
             for i in 0..40 {
                 let Shape::Sphere(sphere) = &geometry.shapes()[i * 14] else { unreachable!() };
                 let (center, side) = (sphere.center(), (unit(i as u32 + 7) - 0.5).normalize());

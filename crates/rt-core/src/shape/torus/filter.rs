@@ -477,6 +477,46 @@ mod tests {
         assert!(count > 1000, "{count}");
     }
 
+    /// The error of a value is what it changes by with the errors of `k` and `z` that are derived above, whatever their signs,
+    /// its own roundings, and what the rounded place of an extremum matters: no less, and no more.
+    #[test]
+    fn what_values_err() {
+        let mut random = Random::new(4);
+        let mut count = 0;
+        for case in 0..4000 {
+            let minor = if case % 2 == 0 { random.uniform(0.3, 2.0) } else { random.magnitude(-4.0, 0.0) };
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, minor).unwrap();
+            let s = torus.reach;
+            let along = random.direction();
+            let target = torus.center + random.in_cube() * s;
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let x = random.uniform(-1.0, 1.0) * s;
+            let Some((rough, ..)) = run(Both(&torus, &ray, x)) else { continue };
+            count += 1;
+            let value = |k: f64, z: f64| {
+                let (k, z) = (rough.k + x * x + k, rough.z + x * rough.slope + z);
+                k * k
+                    - 4.0
+                        * (torus.major_scaled * torus.major_scaled)
+                        * (minor * exp2i(-torus.scale) - z)
+                        * (minor * exp2i(-torus.scale) + z)
+            };
+            // Millions of times as large, which `f64` shows.
+            let share = exp2i(22);
+            let (of_k, of_z) = (24.0 * U * s * s * share, 16.0 * U * s * share);
+            let worst = |k: f64, z: f64| {
+                (value(k, z) - value(0.0, 0.0)).abs().max((value(-k, -z) - value(0.0, 0.0)).abs()) / share
+            };
+            let (k, z) = (rough.k + x * x, rough.z + x * rough.slope);
+            let gap = torus.minor_scaled * torus.minor_scaled - z * z;
+            let terms = k * k + 4.0 * torus.major_scaled * torus.major_scaled * gap.abs();
+            let expected = worst(of_k, 0.0) + worst(0.0, of_z) + 4.0 * U * terms + 0.0625 * U * s * s * s * s;
+            let found = rough.value(&torus, x).error;
+            assert!((found / expected - 1.0).abs() < 1e-4, "{torus:?} {ray:?} {x}: {found:e} {expected:e}");
+        }
+        assert!(count > 1000, "{count}");
+    }
+
     struct Sharp<'a>(&'a Torus, &'a ScaledRay, f64);
 
     impl Task for Sharp<'_> {
