@@ -385,6 +385,35 @@ proptest! {
         prop_assert_eq!(a, parameters(&larger, &far));
     }
 
+    /// P6 of rays that leave the shape from any of its crossings, to either side, but for the last bits.
+    #[test]
+    fn scaling_of_departures((spec, ray) in aimed(spec()), way in direction(), power in -400..400_i32, speed in -400..400_i32) {
+        let (scale, speed) = (libm::exp2(f64::from(power)), libm::exp2(f64::from(speed)));
+        let shape = spec.build().unwrap();
+        let larger = spec.map(|p| p * scale, |d| d, scale).build().unwrap();
+        let far = Ray::new(ray.origin * scale, ray.direction);
+        let onward = |shape: &Shape, ray: &Ray, hit: Hit, side: Side, speed: f64, unit: f64| {
+            let from = shape.surface(ray, hit).departure(0, hit, side);
+            let (ray, within) = from.ray(way * speed);
+            let mut all = Vec::new();
+            shape.crossings_leaving(&ray, within, &from, &mut |hit| all.push(hit));
+            let next = shape.hit_leaving(&ray, within, &from);
+            let place = |hit: Hit| (shape.surface(&ray, hit).t * unit, (hit.part(), hit.root()));
+            next.into_iter().chain(all).map(place).unzip::<f64, (u32, u32), Vec<_>, Vec<_>>()
+        };
+        for (a, b) in crossings(&shape, &ray).into_iter().zip(crossings(&larger, &far)) {
+            for side in [Side::Outside, Side::Inside] {
+                let (a, parts) = onward(&shape, &ray, a, side, 1.0, scale / speed);
+                let (b, same) = onward(&larger, &far, b, side, speed, 1.0);
+                prop_assert_eq!(parts, same);
+                // The parameter of an exit along the surface may be any within its promise.
+                for (a, b) in a.into_iter().zip(b) {
+                    prop_assert!((a - b).abs() <= 1e-12 * (a.abs() + scale / speed), "{} {}", a, b);
+                }
+            }
+        }
+    }
+
     /// P7: a mirror across a coordinate plane changes no bit; neither does another order of the axes for a cuboid, and
     /// for other shapes it changes what one rounding can.
     #[test]

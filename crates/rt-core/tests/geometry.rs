@@ -314,6 +314,23 @@ fn shapes_are_counted_as_they_are_added() {
     }
 }
 
+/// The memory is that of what is made for the shapes: about 150 bytes for each sphere, in any number, and none for a plane.
+#[test]
+fn memory_in_use() {
+    let spheres = |count: u32| {
+        let mut builder = Geometry::builder();
+        for i in 0..count {
+            let i = f64::from(i);
+            builder.push(Sphere::new([i % 37.0, i * 0.618 % 29.0, i * 0.382 % 31.0], 0.25).unwrap());
+        }
+        builder.build().memory()
+    };
+    let [few, many] = [spheres(1000), spheres(10_000)];
+    assert!((50_000..400_000).contains(&few), "{few}");
+    assert!((8 * few..12 * few).contains(&many), "{few} {many}");
+    assert!(Geometry::builder().build().memory() < 1000);
+}
+
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
 #[test]
 fn packets_of_rays_that_graze_spheres() {
