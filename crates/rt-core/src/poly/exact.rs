@@ -450,4 +450,74 @@ mod tests {
         }
         assert!(count[0] > 700 && count[1] > 700 && count[2] > 3000, "{count:?}");
     }
+
+    struct Shifted<'a>(&'a Polynomial, f64);
+
+    impl Task for Shifted<'_> {
+        type Output = Polynomial;
+        fn run<P: Product>(self) -> Polynomial {
+            shifted::<P>(self.0, self.1)
+        }
+    }
+
+    /// The polynomial in another variable has the coefficients of the binomial theorem, exactly as far as two numbers go.
+    #[test]
+    fn developed_about_a_place() {
+        let mut random = Random::new(4);
+        for case in 0..2000 {
+            let number = |random: &mut Random| f64::from(random.below(2000)) - 1000.0;
+            let c: [f64; 5] = core::array::from_fn(|_| number(&mut random));
+            if c[4] == 0.0 || c[0] == 0.0 {
+                continue;
+            }
+            // Whole numbers, so that the development is exact in whole numbers, too.
+            let s = number(&mut random) + 0.5 * f64::from(case % 2);
+            if s == 0.0 {
+                continue;
+            }
+            let p = Polynomial::new(&c.map(Double::from));
+            let about = counted(Shifted(&p, s)).0;
+            // Coefficients by the binomial theorem: below 2^53 in absolute value times 16.
+            let mut expected = [0_i128; 5];
+            let twice = (2.0 * s) as i128;
+            for (i, &c) in c.iter().enumerate() {
+                for (k, expected) in expected.iter_mut().enumerate().take(i + 1) {
+                    let choose =
+                        [[1, 0, 0, 0, 0], [1, 1, 0, 0, 0], [1, 2, 1, 0, 0], [1, 3, 3, 1, 0], [1, 4, 6, 4, 1]]
+                            [i][k];
+                    // Sixteen times the coefficient: c C(i, k) s^(i - k), with s half a whole number.
+                    *expected +=
+                        c as i128 * choose * twice.pow((i - k) as u32) * 2_i128.pow(4 - (i - k) as u32);
+                }
+            }
+            let local = about.local(Double::ONE);
+            // Up to the common power of two, that of the leading coefficient.
+            let unit = c[4] / local.c[4].high;
+            for (k, expected) in expected.into_iter().enumerate() {
+                let found = (local.c[k].high * unit * 16.0) as i128 + (local.c[k].low * unit * 16.0) as i128;
+                assert_eq!(found, expected, "{c:?} {s} {k}");
+            }
+        }
+    }
+
+    /// A sum of parts of any size, to twice the precision of its largest.
+    #[test]
+    fn rounded_to_two_numbers() {
+        let mut random = Random::new(5);
+        for _ in 0..4000 {
+            let mut sum = Expansion::zero();
+            let mut truth = crate::expansion::Expansion::ZERO;
+            for _ in 0..8 {
+                let part = random.sign() * random.uniform(1.0, 2.0) * exp2i(random.below(200) as i32 - 100);
+                sum.add(part);
+                truth.add(part);
+            }
+            let found = sum.to_double();
+            assert_eq!(sum.sign().signum(), found.high.signum());
+            truth.add(-found.high);
+            let low = truth.rounded().to_f64();
+            assert!((low - found.low).abs() <= exp2i(-52) * low.abs(), "{found:?} {low:e}");
+            assert!(found.low.abs() <= exp2i(-53) * found.high.abs());
+        }
+    }
 }
