@@ -106,7 +106,7 @@ fn ends<P: Product>(p: &Polynomial) -> [Knot; 2] {
     let bound = p.bound_exponent();
     let end = if bound > 1023 { f64::MAX } else { ldexp(1.0, bound) };
     [-1, 1].map(|side| {
-        let x = Double::from(end * f64::from(side));
+        let x = Double::from(end.copysign(f64::from(side)));
         let sign = if bound <= 1023 { p.sign_at_infinity(side) } else { sign_of(p.at::<P>(x).value) };
         Knot { x, sign, reach: f64::INFINITY }
     })

@@ -294,7 +294,7 @@ fn place_exactly<P: Product>(
     let mut local = [0, 1, 2].map(|i| t.scale::<P>(d[i]) - w[i]);
     // The quotient errs by 2^-102 of itself, the product and the difference by 2^-103 of their operands.
     let mut error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
-    let largest = local.iter().fold(0.0_f64, |m, x| if x.high.abs() > m { x.high.abs() } else { m });
+    let largest = local.iter().fold(0.0_f64, |m, x| m.max(x.high.abs()));
     // A place near the anchor met from afar: without the difference of large numbers.
     if plane.offset == 0.0 && largest < exp2i(-40) * t.high.abs() {
         local = near_anchor::<P>(&plane.normal, w, d, denominator);

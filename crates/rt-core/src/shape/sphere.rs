@@ -431,7 +431,7 @@ impl Task for FindRescaled<'_> {
             let length = local.length_squared::<P>().sqrt::<P>();
             local = local.mul::<P>(Double::from(radius).div::<P>(length));
         }
-        let half = sqrt(if chord.depth.high > 0.0 { chord.depth.high } else { 0.0 });
+        let half = sqrt(chord.depth.high.max(0.0));
         Refined { t: chord.shift + s, local, error: uncertainty(half) }
     }
 }

@@ -120,7 +120,7 @@ impl Model {
                 let away = move |l| {
                     let outer = distance(l, axis, Kind::Torus { major, minor });
                     let inner = distance(l, axis, Kind::Torus { major: -major, minor });
-                    let nearest = if inner.abs() < outer.abs() { inner.abs() } else { outer.abs() };
+                    let nearest = inner.abs().min(outer.abs());
                     if (outer < 0.0) == (inner < 0.0) { nearest } else { -nearest }
                 };
                 Model {
@@ -202,7 +202,7 @@ impl Model {
 }
 
 fn largest_of(values: [f64; 3]) -> f64 {
-    values.into_iter().fold(f64::NEG_INFINITY, |m, v| if v > m { v } else { m })
+    values.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// A ray about a shape's anchor, moved to its closest approach.
@@ -444,7 +444,7 @@ impl Flat {
                     normal.dot(edge.cross(place - from)) / (normal.length() * edge.length())
                 };
                 let heights = [over(DVec3::ZERO, b), over(b, c), over(c, DVec3::ZERO)];
-                heights.into_iter().fold(f64::INFINITY, |m, h| if h < m { h } else { m })
+                heights.into_iter().fold(f64::INFINITY, f64::min)
             }
         };
         if inside.abs() > doubt { Some(inside > 0.0) } else { None }

@@ -82,7 +82,7 @@ fn developed<P: Product>(c: &[f64; 5], s: f64) -> (f64, [Double; 5], [f64; 4]) {
 #[inline(always)]
 fn total<const N: usize>(pairs: [(f64, f64); N]) -> (Double, f64) {
     let mut high = pairs.map(|p| p.0);
-    let size = high.iter().fold(0.0, |size, x| size + x.abs());
+    let size = sizes(high);
     let mut low = pairs.map(|p| p.1);
     for _ in 0..3 {
         for i in 1..N {
@@ -139,7 +139,8 @@ fn refined<P: Product>(
         let w = v - ah * u;
         let determinant = v * w + bh * u * u;
         // The determinant must be known to a few bits at least: 2^-40 leaves twelve.
-        if !(determinant.abs() > exp2i(-40) * (v * v + (ah * u * v).abs() + (bh * u * u).abs())) {
+        let cancelled = sizes([v * v, ah * u * v, bh * u * u]);
+        if !(determinant.abs() > exp2i(-40) * cancelled) {
             return None;
         }
         let inverse = 1.0 / determinant;
@@ -152,15 +153,15 @@ fn refined<P: Product>(
         m = m + dm;
         n = n + dn;
         // What the residuals do not show: roundings, the coefficients' own errors, the products of two corrections.
-        let n3 = error[3] + NOISE * (al.high.abs() + m.high.abs());
-        let n2 = error[2] + NOISE * (bl.high.abs() + am.high.abs() + n.high.abs()) + (da * dm).abs();
-        let n1 = error[1] + NOISE * (an.high.abs() + bm.high.abs()) + (da * dn).abs() + (db * dm).abs();
-        let n0 = error[0] + NOISE * bn.high.abs() + (db * dn).abs();
+        let noise = [al, m, bl, am, n, an, bm, bn].map(|x| NOISE * x.high);
+        let [of_al, of_m, of_bl, of_am, of_n, of_an, of_bm, of_bn] = noise;
+        let n3 = sizes([error[3], of_al, of_m]);
+        let n2 = sizes([error[2], of_bl, of_am, of_n, da * dm]);
         // And the corrections are solved for in plain arithmetic: the determinant's relative error is below
         // 2^-50 times its cancellation.
-        let blur = exp2i(-48) * (v * v + (ah * u * v).abs() + (bh * u * u).abs()) * inverse.abs();
-        let n1 = n1 + blur * (r1.abs() + (ah * k2).abs() + (bh * r3).abs());
-        let n0 = n0 + blur * (r0.abs() + (bh * k2).abs());
+        let blur = exp2i(-48) * cancelled * inverse;
+        let n1 = sizes([error[1], of_an, of_bm, da * dn, db * dm, blur * sizes([r1, ah * k2, bh * r3])]);
+        let n0 = sizes([error[0], of_bn, db * dn, blur * sizes([r0, bh * k2])]);
         let [ea, eb, em, en] = amplified([n0, n1, n2, n3], [ah, bh, l, m.high], [u, v], inverse);
         let (em, en) = (em + exp2i(-50) * dm.abs(), en + exp2i(-50) * dn.abs());
         let mut found = Roots::<4, Double>::default();
@@ -183,6 +184,12 @@ fn refined<P: Product>(
         }
     }
     None
+}
+
+/// The sum of the absolute values: how far apart numbers may be that differ by so many parts.
+#[inline(always)]
+fn sizes<const N: usize>(parts: [f64; N]) -> f64 {
+    parts.iter().fold(0.0, |sum, part| sum + part.abs())
 }
 
 /// How much `a`, `b`, `m` and `n` change at most when the coefficients of the product `(x^2 + a x + b) (l x^2 + m x + n)`
@@ -217,7 +224,7 @@ fn factor<P: Product>(
     let square = h.square::<P>();
     let product = n.scale::<P>(l);
     let d = square - product;
-    let ed = h.high.abs() * em + em * em + l.abs() * en + NOISE * (square.high + product.high.abs());
+    let ed = sizes([h.high * em, em * em, l * en, NOISE * square.high, NOISE * product.high]);
     if d.high < -ed {
         return true;
     }
@@ -236,10 +243,10 @@ fn factor<P: Product>(
     }
     let s = d.sqrt::<P>();
     let q = if h.high >= 0.0 { h + s } else { h - s };
-    let eq = 0.5 * em + ed / s.high + NOISE * q.high.abs();
+    let eq = sizes([0.5 * em, ed / s.high, NOISE * q.high]);
     let (x, y) = (if l == 1.0 { q } else { q.div::<P>(Double::from(l)) }, n.div::<P>(q));
     let ex = eq / l.abs();
-    let ey = (en + y.high.abs() * eq) / q.high.abs() + NOISE * y.high.abs();
+    let ey = sizes([en / q.high, y.high * eq / q.high, NOISE * y.high]);
     if !(sharp(x, ex) && sharp(y, ey)) {
         return false;
     }
@@ -252,7 +259,7 @@ fn factor<P: Product>(
 #[inline(always)]
 fn linear<P: Product>(m: Double, n: Double, em: f64, en: f64, found: &mut Roots<4, Double>) -> bool {
     let x = -n.div::<P>(m);
-    let error = (en + x.high.abs() * em) / m.high.abs() + NOISE * x.high.abs();
+    let error = sizes([en / m.high, x.high * em / m.high, NOISE * x.high]);
     found.push(x, 1);
     error <= LEFT * x.high.abs()
 }

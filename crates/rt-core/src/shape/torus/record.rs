@@ -178,7 +178,7 @@ impl Torus {
         let rounding = largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4);
         let along = uncertainty / (4.0 * slope.abs());
         let most = sqrt(uncertainty);
-        rounding + exp2i(self.scale) * if along < most { along } else { most }
+        rounding + exp2i(self.scale) * along.min(most)
     }
 }
 
