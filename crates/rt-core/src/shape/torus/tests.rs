@@ -165,11 +165,15 @@ fn first_ways_answer() {
     for i in 0..4000 {
         let x = f64::from(i);
         let way = |k: f64| DVec3::new(libm::sin(k * x), libm::cos(1.7 * k * x), libm::sin(2.3 * k * x + 1.0));
-        let torus = Torus::new(way(0.1), way(0.7), 1.0, 0.15 + 0.1 * libm::fabs(libm::sin(x))).unwrap();
+        // Of any size.
+        let size = exp2i(i % 7 * 5 - 15);
+        let minor = (0.15 + 0.1 * libm::fabs(libm::sin(x))) * size;
+        let torus = Torus::new(way(0.1) * size, way(0.7), size, minor).unwrap();
         // At the tube, from a few sizes away.
         let [a, b] = [torus.frame[0].high(), torus.frame[1].high()];
-        let target = torus.center + (a * libm::cos(x) + b * libm::sin(x)) + way(0.3) * (0.1 * torus.minor);
-        let ray = Ray::new(target + way(1.3) * 4.0, -way(1.3));
+        let target =
+            torus.center + (a * libm::cos(x) + b * libm::sin(x)) * size + way(0.3) * (0.1 * torus.minor);
+        let ray = Ray::new(target + way(1.3) * (4.0 * size), -way(1.3));
         let scaled = torus.scaled(&ray).unwrap();
         count[0] += 1;
         for all in [false, true] {
