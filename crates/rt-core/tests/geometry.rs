@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use rt_core::glam::DVec3;
 use rt_core::kernel::{Level, set_level};
 use rt_core::shape::*;
-use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side};
+use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side, Similarity};
 use std::ops::ControlFlow;
 
 /// Coordinates from a coarse grid, so that faces coincide and rays meet edges, and from anywhere.
@@ -58,7 +58,16 @@ impl Recipe {
         Some(match self.kind {
             0 => Sphere::new(a, r).ok()?.into(),
             1 => Plane::new(a, self.axis).ok()?.into(),
-            2 => Cuboid::new(a.min(b), a.max(b)).ok()?.into(),
+            2 => {
+                let cuboid = Cuboid::new(a.min(b), a.max(b)).ok()?;
+                if r > s {
+                    return Some(cuboid.into());
+                }
+                // Turned about its corner.
+                let turn = Similarity::IDENTITY.rotated(self.axis, 40.0).ok()?;
+                let back = a.min(b) - turn.point(a.min(b));
+                cuboid.transformed(&turn.translated(back).ok()?).ok()?.into()
+            }
             3 => Cylinder::new(a, b, r).ok()?.into(),
             4 => Cone::new(a, r, b, s).ok()?.into(),
             5 => Torus::new(a, self.axis, r.max(s), r.min(s)).ok()?.into(),
