@@ -758,6 +758,48 @@ fn turned_cuboids() {
     }
 }
 
+/// The box of a turned cuboid holds its corners, to the last bit, and a point rounded beside each.
+#[test]
+fn boxes_of_turned_cuboids() {
+    let mut random = Random::new(3);
+    // The sum of two numbers and of a product, each with its error.
+    let add = |(sum, rest): (f64, f64), x: f64| {
+        let s = sum + x;
+        let b = s - sum;
+        (s, rest + ((sum - (s - b)) + (x - b)))
+    };
+    for _ in 0..400 {
+        let size = DVec3::new(random.uniform(0.1, 2.0), random.uniform(0.1, 2.0), random.uniform(0.1, 2.0));
+        let turn = Similarity::IDENTITY.rotated(random.direction(), random.uniform(-180.0, 180.0)).unwrap();
+        let turn = turn.translated(random.in_cube() * random.magnitude(-1.0, 3.0)).unwrap();
+        let cuboid = rt_core::shape::Cuboid::new(-size, size).unwrap().transformed(&turn).unwrap();
+        let (bounds, axes, corner) = (cuboid.bounds().unwrap(), cuboid.axes(), cuboid.corner());
+        for k in 0..3 {
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for i in 0..8 {
+                let mut at = (corner[k], 0.0);
+                for (j, axis) in axes.iter().enumerate().filter(|(j, _)| i >> j & 1 == 1) {
+                    let product = axis[k] * cuboid.size()[j];
+                    at = add(at, product);
+                    at.1 += libm::fma(axis[k], cuboid.size()[j], -product);
+                }
+                // Negative where the corner lies inside.
+                assert!(
+                    (bounds.min[k] - at.0) - at.1 <= 0.0 && (at.0 - bounds.max[k]) + at.1 <= 0.0,
+                    "{cuboid:?}"
+                );
+                (least, most) = (least.min(at.0 + at.1), most.max(at.0 + at.1));
+            }
+            assert!(bounds.min[k] < least && bounds.max[k] > most, "{cuboid:?} {k}");
+            let slack = 1e-15 * (corner[k].abs() + 8.0);
+            assert!(
+                bounds.min[k] > least - 4.0 * slack && bounds.max[k] < most + 4.0 * slack,
+                "{cuboid:?} {k}"
+            );
+        }
+    }
+}
+
 /// A sphere that breaks one promise, now and then.
 #[derive(Debug)]
 struct Broken {

@@ -88,6 +88,8 @@ fn lanes_agree() {
 fn the_level_is_known_everywhere() {
     let best = level();
     assert_eq!(level::is_avx2(), best >= Level::Avx2);
+    // Whatever is set is what is asked, and no more than there is. Other tests meanwhile find the same bits.
+    assert!(set_level(Level::Portable) == Level::Portable && !level::is_avx2());
     assert!(set_level(best) == best && level() == best);
 }
 
