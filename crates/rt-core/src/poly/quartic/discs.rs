@@ -122,7 +122,7 @@ fn four<P: Product>(c: &[f64; 5], mut x: [f64; 4]) -> Option<Roots<4>> {
             x.iter().for_each(|&x| roots.insert(x, 1));
             return Some(roots);
         }
-        if !(share[0] + share[1] + share[2] + share[3] < 1e3) {
+        if !(share.iter().sum::<f64>() < 1e3) {
             return None;
         }
     }

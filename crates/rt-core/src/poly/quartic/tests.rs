@@ -252,7 +252,7 @@ impl Task for All {
 }
 
 /// What must not become slow unseen: how many exact products a quartic takes by its kind, in the mean, as measured and no
-/// more than a fiftieth above.
+/// more than a step of a few hundred above.
 #[test]
 fn products_a_quartic() {
     let mut random = Random::new(7);
@@ -278,7 +278,7 @@ fn products_a_quartic() {
         let (_, products) = counted(All(expanded(&list, &[], 1.0)));
         found[kind] += products as f64 / 1000.0;
     }
-    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.02 * measured), "{found:?}");
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.003 * measured), "{found:?}");
 }
 
 /// The same for the careful solver alone, to less than a step more for every other polynomial.
@@ -313,6 +313,37 @@ fn products_of_the_careful_solver() {
         };
         let (_, products) = counted(Careful(expanded(&list, &[], 1.0)));
         found[kind] += products as f64 / 500.0;
+    }
+    assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.003 * measured), "{found:?}");
+}
+
+/// And of cubics.
+#[test]
+fn products_a_cubic() {
+    let mut random = Random::new(9);
+    let measured = [9.01, 31.37, 132.9, 21.62, 3.01, 68.3];
+    let mut found = [0.0; 6];
+    for case in 0..6000 {
+        let kind = case % 6;
+        let near = random.magnitude(-9.0, -2.0);
+        let tiny = random.magnitude(-12.0, -6.0);
+        let mut root = |i: u32| random.sign() * (f64::from(i) + random.uniform(0.5, 1.0));
+        let [a, b, c] = [root(0), root(1), root(2)];
+        let (list, pairs) = match kind {
+            // Apart; two or three near each other; of very different size; one with a pair; an exact double root.
+            0 => ([a, b, c], None),
+            1 => ([a, a + near, c], None),
+            2 => ([a, a + near, a - 2.0 * near], None),
+            3 => ([a, b * tiny, c * tiny * tiny], None),
+            4 => ([a, b, c], Some([(b, c)])),
+            _ => ([0.5, 0.5, c], None),
+        };
+        let c = match &pairs {
+            None => expanded(&list, &[], 1.0),
+            Some(pairs) => expanded(&list[..1], pairs, 1.0),
+        };
+        let (_, products) = counted(All(c));
+        found[kind] += products as f64 / 1000.0;
     }
     assert!(found.iter().zip(measured).all(|(found, measured)| *found <= 1.003 * measured), "{found:?}");
 }
