@@ -111,13 +111,11 @@ pub(crate) fn checked_point(what: &'static str, value: DVec3) -> Result<DVec3, E
     Ok(value)
 }
 
-/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it.
+/// The crossing at the exact parameter `t`, if that lies inside the interval and rounds to a number inside it: the first
+/// follows from the second, since the ends are numbers themselves.
 #[inline(always)]
 pub(crate) fn admit(within: Interval, t: Double, part: u32, root: u32) -> Option<Hit> {
-    // `t` against an end: exact, since `high` is the nearest number to the sum.
-    let after = t.high > within.min || (t.high == within.min && t.low > 0.0);
-    let before = t.high < within.max || (t.high == within.max && t.low < 0.0);
-    if after && before { within.admit(t.high, part, root) } else { None }
+    within.admit(t.high, part, root)
 }
 
 /// The exit of a ray that starts on the shape and runs inside: a crossing at or before the start is the start's
@@ -258,6 +256,50 @@ mod tests {
         ] {
             assert_eq!(is_plain(DVec3::new(x, y, z)), expected, "{x} {y} {z}");
         }
+    }
+
+    /// Squares of what is let pass are far from the limits; the guard is open between its ends only.
+    #[test]
+    fn lengths_whose_squares_are_in_range() {
+        let (least, most) = (exp2i(-200), exp2i(200));
+        for (length, passes) in [
+            (1.0, true),
+            (least.next_up(), true),
+            (most.next_down(), true),
+            (least, false),
+            (most, false),
+            (0.0, false),
+            (f64::INFINITY, false),
+            (f64::NAN, false),
+        ] {
+            assert_eq!(range_guard(length) == 0.0, passes, "{length:e}");
+            assert_eq!(range_guard(length).is_nan(), !passes, "{length:e}");
+        }
+        let (least, most) = (exp2i(-400), exp2i(400));
+        for (square, in_range) in [
+            (1.0, true),
+            (least, true),
+            (least.next_down(), false),
+            (most, false),
+            (most.next_down(), true),
+            (-1.0, false),
+        ] {
+            assert_eq!(moderate(square), in_range, "{square:e}");
+        }
+    }
+
+    /// An error radius holds one rounding of each coordinate, of the smallest numbers too, and what the place errs.
+    #[test]
+    fn an_error_radius_is_that_of_one_rounding() {
+        let far = DVec3::new(-3.0, 1.0, 7.0);
+        for scale in [1e-3, 1.0, 1e9] {
+            let rounding = error_radius(far * scale, 0.0);
+            let least = 3.0_f64.sqrt() * exp2i(-53) * largest(far * scale);
+            assert!((least..1.02 * least).contains(&rounding), "{rounding:e} {least:e}");
+            assert_eq!(error_radius(far * scale, 0.5), 0.5 + rounding);
+        }
+        assert!(error_radius(DVec3::ZERO, 0.0) < 1e-300);
+        assert!(error_radius(DVec3::splat(1e-320), 0.0) >= f64::from_bits(3));
     }
 
     /// In another unit a crossing has its margin in that unit too.

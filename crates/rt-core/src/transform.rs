@@ -133,6 +133,30 @@ mod tests {
         assert_eq!(s.point(DVec3::X), DVec3::Z);
     }
 
+    /// In every quadrant, on either side of zero.
+    #[test]
+    fn sines_and_cosines_of_degrees() {
+        for k in -100..=100 {
+            let degrees = f64::from(k) * 7.5;
+            let (sin, cos) = sin_cos_degrees(degrees);
+            let (s, c) = libm::sincos(degrees.to_radians());
+            assert!((sin - s).abs() < 1e-14 && (cos - c).abs() < 1e-14, "{degrees}: {sin} {cos}");
+            if k % 12 == 0 {
+                assert!(sin * cos == 0.0 && sin + cos != 0.0 && (sin + cos).abs() == 1.0, "{degrees}");
+            }
+        }
+        // As a map: right-handed about any axis, lengths and the axis stay.
+        let axis = DVec3::new(0.3, -1.2, 0.7);
+        for k in -8..=8 {
+            let degrees = f64::from(k) * 50.0;
+            let turn = Similarity::IDENTITY.rotated(axis, degrees).unwrap();
+            let v = DVec3::new(-0.4, 0.9, 2.0);
+            let expected = glam::DQuat::from_axis_angle(axis.normalize(), degrees.to_radians()) * v;
+            assert!((turn.point(v) - expected).length() < 1e-14, "{degrees}");
+            assert!((turn.point(axis) - axis).length() < 1e-15);
+        }
+    }
+
     #[test]
     fn scale_then_rotate_then_translate() {
         let s = Similarity::IDENTITY.scaled(2.0).unwrap().rotated([0.0, 0.0, 3.0], 90.0).unwrap();

@@ -385,6 +385,35 @@ proptest! {
         prop_assert_eq!(a, parameters(&larger, &far));
     }
 
+    /// P6 of rays that leave the shape from any of its crossings, to either side, but for the last bits.
+    #[test]
+    fn scaling_of_departures((spec, ray) in aimed(spec()), way in direction(), power in -400..400_i32, speed in -400..400_i32) {
+        let (scale, speed) = (libm::exp2(f64::from(power)), libm::exp2(f64::from(speed)));
+        let shape = spec.build().unwrap();
+        let larger = spec.map(|p| p * scale, |d| d, scale).build().unwrap();
+        let far = Ray::new(ray.origin * scale, ray.direction);
+        let onward = |shape: &Shape, ray: &Ray, hit: Hit, side: Side, speed: f64, unit: f64| {
+            let from = shape.surface(ray, hit).departure(0, hit, side);
+            let (ray, within) = from.ray(way * speed);
+            let mut all = Vec::new();
+            shape.crossings_leaving(&ray, within, &from, &mut |hit| all.push(hit));
+            let next = shape.hit_leaving(&ray, within, &from);
+            let place = |hit: Hit| (shape.surface(&ray, hit).t * unit, (hit.part(), hit.root()));
+            next.into_iter().chain(all).map(place).unzip::<f64, (u32, u32), Vec<_>, Vec<_>>()
+        };
+        for (a, b) in crossings(&shape, &ray).into_iter().zip(crossings(&larger, &far)) {
+            for side in [Side::Outside, Side::Inside] {
+                let (a, parts) = onward(&shape, &ray, a, side, 1.0, scale / speed);
+                let (b, same) = onward(&larger, &far, b, side, speed, 1.0);
+                prop_assert_eq!(parts, same);
+                // The parameter of an exit along the surface may be any within its promise.
+                for (a, b) in a.into_iter().zip(b) {
+                    prop_assert!((a - b).abs() <= 1e-12 * (a.abs() + scale / speed), "{} {}", a, b);
+                }
+            }
+        }
+    }
+
     /// P7: a mirror across a coordinate plane changes no bit; neither does another order of the axes for a cuboid, and
     /// for other shapes it changes what one rounding can.
     #[test]
@@ -709,8 +738,65 @@ fn turned_cuboids() {
         let turn = Similarity::IDENTITY.rotated([1.0, 2.0, -0.5], degrees).unwrap();
         let turn = turn.translated([1e4, -3.0, 0.5]).unwrap();
         let cuboid = rt_core::shape::Cuboid::new([-1.0, -2.0, -0.5], [1.0, 2.0, 0.5]).unwrap();
-        let shape = cuboid.transformed(&turn).unwrap();
+        let shape: Shape = cuboid.transformed(&turn).unwrap().into();
         check_primitive(&shape, &Effort::new(7, 1000).closed()).unwrap_or_else(|failure| panic!("{failure}"));
+        // From next to the least numbers to the greatest, the length of the direction changes the parameter alone, if not to
+        // the last bit.
+        let ray = Ray::new([1e4 + 5.0, -2.5, 0.25], [-1.0, 0.0625, 0.125]);
+        let hits = crossings(&shape, &ray);
+        assert_eq!(hits.len(), 2);
+        for power in [-1018, -1000, -950, -900, -500, 500, 950, 1000, 1010] {
+            let unit = libm::scalbn(1.0, power);
+            let faster = Ray::new(ray.origin, ray.direction * unit);
+            let (a, b) = (crossings(&shape, &faster), shape.hit(&faster, Interval::FORWARD));
+            assert_eq!((a.len(), b.map(|b| b.t())), (2, a.first().map(|a| a.t())), "{power}");
+            for (a, hit) in a.iter().zip(&hits) {
+                assert_eq!(a.part(), hit.part(), "{power}");
+                assert!((a.t() * unit / hit.t() - 1.0).abs() < 1e-15, "{power}");
+            }
+        }
+    }
+}
+
+/// The box of a turned cuboid holds its corners, to the last bit, and a point rounded beside each.
+#[test]
+fn boxes_of_turned_cuboids() {
+    let mut random = Random::new(3);
+    // The sum of two numbers and of a product, each with its error.
+    let add = |(sum, rest): (f64, f64), x: f64| {
+        let s = sum + x;
+        let b = s - sum;
+        (s, rest + ((sum - (s - b)) + (x - b)))
+    };
+    for _ in 0..400 {
+        let size = DVec3::new(random.uniform(0.1, 2.0), random.uniform(0.1, 2.0), random.uniform(0.1, 2.0));
+        let turn = Similarity::IDENTITY.rotated(random.direction(), random.uniform(-180.0, 180.0)).unwrap();
+        let turn = turn.translated(random.in_cube() * random.magnitude(-1.0, 3.0)).unwrap();
+        let cuboid = rt_core::shape::Cuboid::new(-size, size).unwrap().transformed(&turn).unwrap();
+        let (bounds, axes, corner) = (cuboid.bounds().unwrap(), cuboid.axes(), cuboid.corner());
+        for k in 0..3 {
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for i in 0..8 {
+                let mut at = (corner[k], 0.0);
+                for (j, axis) in axes.iter().enumerate().filter(|(j, _)| i >> j & 1 == 1) {
+                    let product = axis[k] * cuboid.size()[j];
+                    at = add(at, product);
+                    at.1 += libm::fma(axis[k], cuboid.size()[j], -product);
+                }
+                // Negative where the corner lies inside.
+                assert!(
+                    (bounds.min[k] - at.0) - at.1 <= 0.0 && (at.0 - bounds.max[k]) + at.1 <= 0.0,
+                    "{cuboid:?}"
+                );
+                (least, most) = (least.min(at.0 + at.1), most.max(at.0 + at.1));
+            }
+            assert!(bounds.min[k] < least && bounds.max[k] > most, "{cuboid:?} {k}");
+            let slack = 1e-15 * (corner[k].abs() + 8.0);
+            assert!(
+                bounds.min[k] > least - 4.0 * slack && bounds.max[k] < most + 4.0 * slack,
+                "{cuboid:?} {k}"
+            );
+        }
     }
 }
 
@@ -726,6 +812,7 @@ enum Fault {
     None,
     Panic,
     InvalidRay,
+    InvalidRayCrossed,
     OutsideInterval,
     SplitInterval,
     HitAgain,
@@ -794,6 +881,9 @@ impl Primitive for Broken {
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
         let mut hits = Vec::new();
         self.sphere.crossings(ray, within, &mut |hit| hits.push(hit));
+        if self.fault == Fault::InvalidRayCrossed && !ray.is_valid() {
+            hits.extend(Interval::LINE.admit(1.0, 0, 0));
+        }
         if self.fault == Fault::Odd && hits.len() == 2 {
             hits.pop();
         }
@@ -845,6 +935,7 @@ fn broken_shapes_are_found() {
     let expected = [
         (Panic, "no panic"),
         (InvalidRay, "no panic"),
+        (InvalidRayCrossed, "no panic"),
         (OutsideInterval, "an interval that"),
         (SplitInterval, "a split interval"),
         (HitAgain, "an interval that"),

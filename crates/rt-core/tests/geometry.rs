@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use rt_core::glam::DVec3;
 use rt_core::kernel::{Level, set_level};
 use rt_core::shape::*;
-use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side};
+use rt_core::{Found, Geometry, Interval, Primitive, Ray, Screen, Shape, Side, Similarity};
 use std::ops::ControlFlow;
 
 /// Coordinates from a coarse grid, so that faces coincide and rays meet edges, and from anywhere.
@@ -58,7 +58,16 @@ impl Recipe {
         Some(match self.kind {
             0 => Sphere::new(a, r).ok()?.into(),
             1 => Plane::new(a, self.axis).ok()?.into(),
-            2 => Cuboid::new(a.min(b), a.max(b)).ok()?.into(),
+            2 => {
+                let cuboid = Cuboid::new(a.min(b), a.max(b)).ok()?;
+                if r > s {
+                    return Some(cuboid.into());
+                }
+                // Turned about its corner.
+                let turn = Similarity::IDENTITY.rotated(self.axis, 40.0).ok()?;
+                let back = a.min(b) - turn.point(a.min(b));
+                cuboid.transformed(&turn.translated(back).ok()?).ok()?.into()
+            }
             3 => Cylinder::new(a, b, r).ok()?.into(),
             4 => Cone::new(a, r, b, s).ok()?.into(),
             5 => Torus::new(a, self.axis, r.max(s), r.min(s)).ok()?.into(),
@@ -304,6 +313,36 @@ proptest! {
     }
 }
 
+#[test]
+fn shapes_are_counted_as_they_are_added() {
+    let mut builder = Geometry::builder();
+    for i in 0..5 {
+        assert_eq!(builder.push(Sphere::new([f64::from(i), 0.0, 0.0], 0.25).unwrap()), i);
+    }
+    let geometry = builder.add(Sphere::new([5.0, 0.0, 0.0], 0.25).unwrap()).build();
+    for i in 0..6 {
+        let ray = Ray::new([f64::from(i), 0.0, -3.0], [0.0, 0.0, 1.0]);
+        assert_eq!(geometry.nearest(&ray, Interval::FORWARD).map(|found| found.object), Some(i));
+    }
+}
+
+/// The memory is that of what is made for the shapes: about 150 bytes for each sphere, in any number, and none for a plane.
+#[test]
+fn memory_in_use() {
+    let spheres = |count: u32| {
+        let mut builder = Geometry::builder();
+        for i in 0..count {
+            let i = f64::from(i);
+            builder.push(Sphere::new([i % 37.0, i * 0.618 % 29.0, i * 0.382 % 31.0], 0.25).unwrap());
+        }
+        builder.build().memory()
+    };
+    let [few, many] = [spheres(1000), spheres(10_000)];
+    assert!((50_000..400_000).contains(&few), "{few}");
+    assert!((8 * few..12 * few).contains(&many), "{few} {many}");
+    assert!(Geometry::builder().build().memory() < 1000);
+}
+
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
 #[test]
 fn packets_of_rays_that_graze_spheres() {
@@ -318,7 +357,7 @@ fn packets_of_rays_that_graze_spheres() {
             builder.push(Sphere::new(unit(i) * scale + offset, radius).unwrap());
         }
         let geometry = builder.build();
-        for (far, count) in [(0.0, 32), (1.5, 32), (50.0, 21), (1e4, 16)] {
+        for (far, count) in [(-0.3, 32), (0.0, 32), (1.5, 32), (50.0, 21), (1e4, 16)] {
             for i in 0..40 {
                 let Shape::Sphere(sphere) = &geometry.shapes()[i * 14] else { unreachable!() };
                 let (center, side) = (sphere.center(), (unit(i as u32 + 7) - 0.5).normalize());
@@ -462,5 +501,72 @@ fn one_ray_of_a_packet_goes_on() {
             let t = found.expect("each ray meets a ball").hit.t();
             assert!((t > 15.0) == (i == one), "ray {i} without the ball of {one}: {t}");
         }
+    }
+}
+
+/// A sphere met from 250 radii away by a ray whose direction is half the greatest number long: accelerated as plainly.
+#[test]
+fn the_longest_directions() {
+    let shapes: [Shape; 2] = [
+        rt_core::shape::Sphere::new([-73.0, -40.0, 1.2e60], 3.6e152).unwrap().into(),
+        rt_core::shape::Plane::new([99.0, 121.0, 121.0], [1.0, 1.0, 1.0]).unwrap().into(),
+    ];
+    let build = |accelerated: bool| {
+        let mut builder = Geometry::builder().accelerated(accelerated);
+        shapes.iter().for_each(|shape| _ = builder.push(shape.clone()));
+        builder.build()
+    };
+    for (x, y, z) in [(105.6, 8.8e52, 9.2e307), (0.0, 0.0, 4.4e307), (1e305, 0.0, f64::MAX)] {
+        let ray = Ray::new([24.75, 3.9e-13, -9.08e154], [x, y, z]);
+        let [fast, plain] =
+            [true, false].map(|accelerated| build(accelerated).nearest(&ray, Interval::FORWARD));
+        assert_eq!(fast, plain);
+        assert_eq!(plain.map(|found| found.object), Some(0));
+    }
+}
+
+/// Cones and cylinders whose radius is anything up to 1e60 times their height, or the other way round: both crossings of a ray
+/// may be one as far as can be told, but then it is no crossing beside the shape. Accelerated as plainly.
+#[cfg(feature = "testing")]
+#[test]
+fn flat_cones_and_needles() {
+    let check = |shape: Shape, ray: Ray| {
+        let build = |accelerated: bool| {
+            let mut builder = Geometry::builder().accelerated(accelerated);
+            builder.push(shape.clone());
+            builder.build()
+        };
+        let [fast, plain] =
+            [true, false].map(|accelerated| build(accelerated).nearest(&ray, Interval::FORWARD));
+        assert_eq!(fast, plain, "{shape:?} {ray:?}");
+    };
+    // Ten radii from the axis.
+    let (base, top) =
+        ([51.29296875, -93.88671875, -113.66015625], [51.29296875, -93.88671875, -173.27734375]);
+    let cone = Cone::open(base, 1.2884779604201031e35, top, 106.49609375).unwrap();
+    let origin = [-1.7296495718327678e36, -7.115392158729815e35, -1.0417835958088987e36];
+    check(cone.into(), Ray::new(origin, [0.0, 0.0, 60.10546875]));
+    let mut random = rt_core::testing::Random::new(1);
+    for case in 0..60_000 {
+        let mut point = || random.in_cube() * 128.0;
+        let (a, b, near) = (point(), point(), point());
+        let b = if case % 2 == 0 { a + DVec3::AXES[case / 2 % 3] * b.x } else { b };
+        let exponent = random.uniform(9.0, 60.0);
+        let large = random.magnitude(exponent, exponent + 1.0);
+        let (l, m) = if case % 4 < 2 { (near.x.abs(), large) } else { (large, near.x.abs()) };
+        let far = random.magnitude(0.0, exponent);
+        let shape: Shape = match case % 5 {
+            0 => Cone::new(a, l, b, m).unwrap().into(),
+            1 => Cylinder::new(a, b, large).unwrap().into(),
+            2 => Cylinder::open(a, a + (b - a) * far, near.x.abs()).unwrap().into(),
+            _ => Cone::open(a, l, b, m).unwrap().into(),
+        };
+        let origin = if case % 3 == 0 { near } else { random.in_cube() * far * 128.0 };
+        let direction = match case % 7 {
+            0 => a - origin,
+            1 | 2 => DVec3::AXES[case % 3] * random.sign(),
+            _ => random.in_cube() * 128.0,
+        };
+        check(shape, Ray::new(origin, direction));
     }
 }

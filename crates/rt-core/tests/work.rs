@@ -53,7 +53,7 @@ fn cloud(random: &mut Random, count: usize, size: f64) -> Geometry {
 #[test]
 fn questions_a_ray() {
     let mut random = Random::new(1);
-    let (mut found, mut by_cube) = (Vec::new(), f64::INFINITY);
+    let (mut found, mut by_cube, mut back) = (Vec::new(), f64::INFINITY, f64::INFINITY);
     for (count, size) in [(30, 0.6), (1000, 0.2), (20_000, 0.08)] {
         let geometry = cloud(&mut random, count, size);
         // As of a camera: 40 x 40 pixels, in tiles of 4 x 4.
@@ -84,6 +84,18 @@ fn questions_a_ray() {
             by_cube = asked(rays.len(), || {
                 rays.iter().for_each(|ray| _ = geometry.nearest_from(&cube, ray, Interval::FORWARD));
             });
+            // Back to the camera, from what its rays meet on either side.
+            let starts: Vec<_> = scattered
+                .iter()
+                .filter_map(|ray| {
+                    let found = geometry.nearest(ray, Interval::FORWARD)?;
+                    let surface = geometry.surface(ray, found);
+                    Some(surface.departure(found.object, found.hit, rt_core::Side::Outside))
+                })
+                .collect();
+            back = asked(starts.len(), || {
+                starts.iter().for_each(|from| _ = geometry.blocked_towards(&cube, from, &[], &mut |_| ()));
+            });
         }
     }
     // As measured, and no more than a twentieth above: camera's rays and scattered ones for each scene, nearest hits one by
@@ -99,4 +111,5 @@ fn questions_a_ray() {
     let within = |found: &f64, measured: &f64| *found <= measured * 1.05 && *found >= measured * 0.5;
     assert!(found.iter().zip(measured.iter().flatten()).all(|(a, b)| within(a, b)), "{found:?}");
     assert!(by_cube <= 0.943 * 1.05, "{by_cube}");
+    assert!(back <= 1.185 * 1.05, "{back}");
 }

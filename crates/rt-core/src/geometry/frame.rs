@@ -18,6 +18,9 @@ const U: f64 = exp2i(-53);
 /// The absolute part of a [`Window`] for an origin at zero, in kernel coordinates.
 const WINDOW: f64 = exp2i(-24);
 
+/// Origins farther away than this, in kernel coordinates, are not followed: they are known to less than 2^-13 of the scene.
+const FARTHEST: f64 = exp2i(40);
+
 /// The map from the world to kernel coordinates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
@@ -85,12 +88,18 @@ impl Windows {
         let direction_exponent = exponent(largest(direction));
         let power = direction_exponent - self.exponent;
         match self.far {
-            Some(far) if direction_exponent >= -1000 && (-1000..=1000).contains(&power) => {
+            Some(far) if is_middling(direction_exponent) && is_middling(power) => {
                 Window { absolute: far * exp2i(-power) }
             }
             _ => Window { absolute: 0.0 },
         }
     }
+}
+
+/// Whether two to this power, and to its opposite, are far from the limits of `f64`.
+#[inline(always)]
+fn is_middling(power: i32) -> bool {
+    (-1000..=1000).contains(&power)
 }
 
 /// Whether box tests can hold this: finite, in order, and far from the limits of `f64`.
@@ -140,7 +149,7 @@ impl Frame {
     /// The windows of ties that [`enter`](Frame::enter) gives for valid rays from this point.
     pub fn windows(&self, origin: DVec3) -> Windows {
         let far = largest((origin - self.center) * exp2i(-self.exponent));
-        let far = if self.inhabited && far < exp2i(60) { Some((far + 1.0) * WINDOW) } else { None };
+        let far = if self.inhabited && far < FARTHEST { Some((far + 1.0) * WINDOW) } else { None };
         Windows { exponent: self.exponent, far }
     }
 
@@ -154,8 +163,8 @@ impl Frame {
         }
         let direction_exponent = exponent(ray.direction.abs().max_element());
         let power = direction_exponent - self.exponent;
-        // Not for directions that are not normal numbers, or whose parameters would overflow.
-        if direction_exponent < -1000 || !(-1000..=1000).contains(&power) {
+        // Not for directions that are not normal numbers or whose reciprocal is none, nor for parameters that would overflow.
+        if !(is_middling(direction_exponent) && is_middling(power)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
         let scale = exp2i(-self.exponent);
@@ -163,8 +172,7 @@ impl Frame {
         let direction = ray.direction * exp2i(-direction_exponent);
         let factor = exp2i(power);
         let far = origin.abs().max_element();
-        // Beyond, the error would exceed the scene and squares of it would near the limits.
-        if !(far < exp2i(60)) {
+        if !(far < FARTHEST) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
         let absolute = (far + 1.0) * WINDOW;
@@ -173,8 +181,8 @@ impl Frame {
         let mut start = within.min * factor - absolute;
         if !(start.abs() * 2.0 + far <= 8.0) {
             // Begin where the ray enters the box of the scene, which is [-1, 1] with room for all roundings: the
-            // origin's (u |o'|), that of the difference and the quotient (2 u (|o'| + 2)), and margin.
-            let room = 1.0 + exp2i(-10) + 8.0 * U * far;
+            // origin's (u |o'|), that of the difference and the quotient (2 u (|o'| + 2)), at most 2^-11 together.
+            let room = 1.0 + exp2i(-10);
             let mut exit = f64::INFINITY;
             for axis in 0..3 {
                 let (o, d) = (origin[axis], direction[axis]);
@@ -386,6 +394,136 @@ mod tests {
                 assert!(limit - t >= t.abs() * exp2i(-31) + 0.5 * absolute, "{t} {limit}");
             }
         }
+    }
+
+    /// Directions next to the greatest and least numbers, and parameters there, meet every box; others are followed.
+    #[test]
+    fn directions_of_extreme_length() {
+        for (size, speed, followed) in [
+            (1.0, 1.0, true),
+            (1.0, exp2i(1000), true),
+            (1.0, exp2i(1001), false),
+            (1.0, exp2i(1023), false),
+            (1e100, exp2i(1023) * 1.5, false),
+            (1.0, exp2i(-1000), false),
+            (exp2i(-10), exp2i(-1000), true),
+            (exp2i(-10), exp2i(-1001), false),
+            (exp2i(-10), f64::from_bits(1), false),
+            (exp2i(-300), exp2i(710), false),
+            (exp2i(300), exp2i(-710), false),
+        ] {
+            let bounds = Aabb::new(DVec3::splat(-size), DVec3::splat(size));
+            let frame = Frame::around(1, [Some(bounds)].into_iter());
+            let ray = Ray::new([0.0, 0.0, -3.0 * size], DVec3::new(0.0, 0.25, 1.0) * speed);
+            let (local, window) = frame.enter(&ray, Interval::FORWARD);
+            let local = local.unwrap();
+            assert_eq!(local.shift.is_finite(), followed, "{size:e} {speed:e}");
+            assert_eq!(window.absolute > 0.0, followed);
+            assert_eq!(frame.windows(ray.origin).of(ray.direction).absolute, window.absolute);
+            assert!(!followed || local.direction == DVec3::new(0.0, 0.25, 1.0));
+        }
+    }
+
+    /// What a packet keeps of each ray: its place, its end, and an error that holds for all.
+    #[test]
+    fn a_packet_keeps_its_rays() {
+        let mut side = Side::EMPTY;
+        let of = |i: usize, error: DVec3| LocalRay {
+            origin: DVec3::new(0.5, -0.25, 0.125) * (1 + i) as f64,
+            error,
+            direction: DVec3::new(1.0, -0.5, 1.5) / (1 + i) as f64,
+            factor: (2 + i) as f64,
+            shift: 0.25 * i as f64,
+        };
+        for i in 0..PACKET {
+            let error = DVec3::AXES[i % 3] * if i == 9 { 3e-5 } else { 1e-7 } + DVec3::splat(1e-5);
+            side.set(i, &of(i, error), i as f64);
+        }
+        assert!((side.error - 6e-5).abs() < 1e-15, "{}", side.error);
+        for i in 0..PACKET {
+            let ray = of(i, DVec3::ZERO);
+            for k in 0..3 {
+                assert_eq!(side.origin[i / 8][k][i % 8], ray.origin[k] as f32);
+                assert_eq!(side.direction[i / 8][k][i % 8], ray.direction[k] as f32);
+            }
+            assert_eq!(side.limit[i / 8][i % 8], ray.limit(i as f64));
+            assert_eq!(side.limit_of(i, 0.75), ray.limit(0.75));
+            let true_end = 0.75 * ray.factor + ray.shift;
+            assert!((true_end..true_end * (1.0 + 1e-6)).contains(&f64::from(ray.limit(0.75))));
+        }
+        side.cut(11, 0.5);
+        assert_eq!(side.limit[1][3], of(11, DVec3::ZERO).limit(0.5));
+        assert_eq!(side.limit[1][4], of(12, DVec3::ZERO).limit(12.0));
+        side.repeat(30, 11);
+        for k in 0..3 {
+            assert_eq!(side.origin[3][k][6], side.origin[1][k][3]);
+            assert_eq!(side.direction[3][k][6], side.direction[1][k][3]);
+            assert_ne!(side.origin[3][k][5], side.origin[1][k][3]);
+        }
+        assert_eq!(side.limit[3][6], f32::NEG_INFINITY);
+    }
+
+    /// A ray that meets the box of the scene begins before it does, not long before, and its places and parameters are those
+    /// of the world; one that passes it is none.
+    #[test]
+    fn rays_begin_where_they_enter() {
+        use crate::testing::Random;
+        let mut random = Random::new(1);
+        let (mut none, mut some) = (0, 0);
+        for case in 0..4000 {
+            let (corner, size) = (random.in_cube() * 3.0, random.magnitude(-2.0, 2.0));
+            let bounds = Aabb::new(corner, corner + DVec3::new(size, size * 0.9, size * 0.3));
+            let frame = Frame::around(1, [Some(bounds)].into_iter());
+            let unit = exp2i(frame.exponent);
+            let (center, distance) = (bounds.center(), unit * random.magnitude(0.5, 11.9));
+            assert!(largest(bounds.max - center) <= unit);
+            let origin = center + random.direction() * distance;
+            let inside = random.in_cube();
+            // At a place in the scene's box, or beside it: how far outside, in units of the scene, along one axis.
+            let beyond = if case % 3 == 0 { 1.0 + random.magnitude(-2.5, 0.0) } else { 0.99 };
+            let axis = case % 7 % 3;
+            let mut target = inside.to_array();
+            target[axis] = beyond * random.sign();
+            let target = center + DVec3::from_array(target) * unit;
+            let mut direction = (target - origin) * random.magnitude(-3.0, 3.0);
+            if case % 3 == 0 {
+                // Across that axis nothing changes: the line stays beside the box.
+                direction =
+                    DVec3::from_array(core::array::from_fn(|k| if k == axis { 0.0 } else { direction[k] }));
+            }
+            let origin = if case % 3 == 0 {
+                DVec3::from_array(core::array::from_fn(|k| if k == axis { target[k] } else { origin[k] }))
+            } else {
+                origin
+            };
+            let ray = Ray::new(origin, direction);
+            let (local, window) = frame.enter(&ray, Interval::FORWARD);
+            if beyond > 1.0 + exp2i(-9) {
+                none += u32::from(local.is_none());
+                continue;
+            }
+            let Some(local) = local else { panic!("{ray:?} {bounds:?}") };
+            some += 1;
+            let far = largest(origin - center) / unit;
+            let t = (target - origin).dot(direction) / direction.length_squared();
+            // The parameter of the target, in kernel coordinates from where the ray begins.
+            let along = t * local.factor + local.shift - (far + 1.0) * WINDOW;
+            let off = local.origin + local.direction * along - (target - center) / unit;
+            assert!(largest(off) <= largest(local.error) + exp2i(-49) * far, "{off} {ray:?}");
+            assert!(largest(local.error) <= exp2i(-48) * (far + 1.0));
+            let limit = f64::from(local.limit(t));
+            assert!(limit >= 0.0 && limit - along <= 4.0 * (far + 1.0) * WINDOW + exp2i(-20) * along.abs());
+            // Begun in the box: nowhere else than where it enters, if it does not start inside.
+            if far > 8.0 {
+                let most = largest(local.origin);
+                assert!((1.0..1.0 + exp2i(-9)).contains(&most), "{most} {ray:?}");
+            }
+            let absolute = (far + 1.0) * WINDOW / local.factor;
+            assert!((window.absolute / absolute - 1.0).abs() < 1e-9);
+            let same = frame.windows(origin).of(direction).absolute;
+            assert!(same.to_bits() == window.absolute.to_bits(), "{same} {window:?}");
+        }
+        assert!(none > 1000 && some > 2600, "{none} {some}");
     }
 
     #[test]

@@ -288,4 +288,59 @@ mod tests {
             }
         }
     }
+
+    /// The outline of any shape holds its surface and exceeds it by no more than polygons do.
+    #[test]
+    fn outlines_hold_their_shapes() {
+        use crate::shape::{Cone, Cuboid, Cylinder, Disk, Sphere, Triangle};
+        use crate::{Interval, Primitive, Ray, Similarity};
+        let mut random = crate::testing::Random::new(1);
+        for _ in 0..20 {
+            let (a, b, c) = (random.in_cube(), random.in_cube(), random.in_cube());
+            let turn = Similarity::IDENTITY.rotated(b, 77.0).unwrap().translated(c).unwrap();
+            let size = DVec3::new(0.3, 0.9, 0.5);
+            let shapes: [Shape; 6] = [
+                Cuboid::new(a, a + size).unwrap().into(),
+                Cuboid::new(-size, size).unwrap().transformed(&turn).unwrap().into(),
+                Cylinder::new(a, a + b.normalize(), 0.4).unwrap().into(),
+                Cone::new(a, 0.2, a + b.normalize(), 0.7).unwrap().into(),
+                Disk::new(a, b, 0.6).unwrap().into(),
+                Triangle::new(a, b, c).unwrap().into(),
+            ];
+            let point = random.in_cube() * 3.0;
+            for shape in shapes {
+                let Outline::Hull(corners) = Outline::of(&shape, point) else { panic!("a hull") };
+                let bounds = shape.bounds().unwrap();
+                let mut places = Vec::new();
+                for _ in 0..1500 {
+                    let target = bounds.min + (random.in_cube() * 0.5 + 0.5) * (bounds.max - bounds.min);
+                    let ray = Ray::new(target, random.direction());
+                    shape.crossings(&ray, Interval::LINE, &mut |hit| {
+                        places.push(shape.surface(&ray, hit).point)
+                    });
+                }
+                assert!(places.len() > 50, "{shape:?}");
+                for _ in 0..100 {
+                    let way = random.direction();
+                    let farthest =
+                        |points: &[DVec3]| points.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.dot(way)));
+                    let (hull, surface) = (farthest(&corners), farthest(&places) - point.dot(way));
+                    assert!(
+                        (surface - 1e-12..surface + 0.3).contains(&hull),
+                        "{shape:?} {way}: {hull} {surface}"
+                    );
+                }
+            }
+            let sphere = Sphere::new(a, 0.25).unwrap();
+            match Outline::of(&sphere.into(), point) {
+                Outline::Ball { center, sine } => {
+                    assert_eq!(center, a - point);
+                    assert!(
+                        (sine * center.length() / 0.25 - 1.0).abs() < 1e-8 && sine * center.length() > 0.25
+                    );
+                }
+                _ => assert!((a - point).length() < 0.2501),
+            }
+        }
+    }
 }

@@ -7,6 +7,17 @@ extern crate std;
 
 std::thread_local! {
     static PRODUCTS: Cell<u64> = const { Cell::new(0) };
+    static STEPS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Counts a step of a search in plain `f64`.
+pub fn step() {
+    STEPS.set(STEPS.get() + 1);
+}
+
+/// The steps counted so far.
+pub fn steps() -> u64 {
+    STEPS.get()
 }
 
 /// [`Dekker`], counted.

@@ -1,8 +1,11 @@
 //! What the instruction sets have in common.
 
 use super::*;
+use crate::math::exp2i;
 use crate::testing::Random;
+use alloc::format;
 use alloc::vec::Vec;
+use glam::DVec3;
 
 /// The bits of a number; those of a NaN mean nothing.
 fn bits(x: f64) -> u64 {
@@ -114,6 +117,8 @@ fn pairs_are_two_numbers() {
 fn the_level_is_known_everywhere() {
     let best = level();
     assert_eq!(level::is_avx2(), best >= Level::Avx2);
+    // Whatever is set is what is asked, and no more than there is. Other tests meanwhile find the same bits.
+    assert!(set_level(Level::Portable) == Level::Portable && !level::is_avx2());
     assert!(set_level(best) == best && level() == best);
 }
 
@@ -125,4 +130,145 @@ fn rows_of_boxes() {
         assert_ne!(Row::max(axis), Row::max((axis + 1) % 3));
         assert_ne!(Row::min(axis), Row::max((axis + 1) % 3));
     }
+}
+
+/// Eight rays, with the largest component of each direction in `[1, 2)`.
+struct Eight {
+    origin: [[f32; 8]; 3],
+    direction: [[f32; 8]; 3],
+    /// What is asked: a box, how much it grows, and where the rays end.
+    min: [f32; 3],
+    max: [f32; 3],
+    pad: f32,
+    limit: [f32; 8],
+}
+
+impl Vectorized for &Eight {
+    type Output = [u32; 2];
+    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+        let rays = EightRays::new(lanes, &self.origin, &self.direction);
+        [
+            rays.test(lanes, self.min, self.max, self.pad, &self.limit),
+            rays.test_ball(lanes, self.min, self.max, self.pad, &self.limit),
+        ]
+    }
+}
+
+impl Eight {
+    fn ray(&self, i: usize) -> (DVec3, DVec3) {
+        let of = |list: &[[f32; 8]; 3]| DVec3::from_array(list.map(|row| f64::from(row[i])));
+        (of(&self.origin), of(&self.direction))
+    }
+
+    /// Where the line is in the box grown by this.
+    fn slab(&self, i: usize, grown: f64) -> [f64; 2] {
+        let (o, d) = self.ray(i);
+        (0..3).fold([f64::NEG_INFINITY, f64::INFINITY], |[enter, leave], k| {
+            let ends = [f64::from(self.min[k]) - grown, f64::from(self.max[k]) + grown];
+            let [a, b] = ends.map(|x| (x - o[k]) / d[k]);
+            [enter.max(a.min(b)), leave.min(a.max(b))]
+        })
+    }
+}
+
+/// What meets a box or a ball before its end is told, and little else: rays that pass at a few pads from its edges, and end
+/// or begin as near to it.
+#[test]
+fn eight_rays_meet_boxes_and_balls() {
+    let mut random = Random::new(4);
+    let mut counts = [[0; 3]; 2];
+    for case in 0..3000 {
+        let center = random.in_cube() * 0.7;
+        let radius = random.magnitude(-3.0, -0.6);
+        let flat = |k: usize| if case % 3 == k { random_edge(case) } else { 1.0 };
+        let half = DVec3::new(flat(0), flat(1), flat(2)) * radius;
+        let single = |v: DVec3| v.to_array().map(|x| x as f32);
+        let mut eight = Eight {
+            origin: [[0.0; 8]; 3],
+            direction: [[0.0; 8]; 3],
+            min: single(center - half),
+            max: single(center + half),
+            pad: 0.0,
+            limit: [0.0; 8],
+        };
+        let mut far = 0.0_f64;
+        for i in 0..8 {
+            let d = random.direction();
+            let across = d.cross(random.direction()).normalize();
+            // Next to the ball's edge, or anywhere in it.
+            let off = match random.below(4) {
+                0 => radius * random.uniform(0.0, 1.0),
+                _ => radius + exp2i(-18) * random.uniform(-6.0, 12.0),
+            };
+            let back = if random.once_in(3) {
+                (radius + exp2i(-18) * random.uniform(-8.0, 8.0)) * random.sign()
+            } else {
+                random.uniform(-1.0, 3.0)
+            };
+            let o = center + across * off - d * back;
+            let d = d * exp2i(-crate::math::exponent(d.abs().max_element()));
+            for k in 0..3 {
+                eight.origin[k][i] = o[k] as f32;
+                eight.direction[k][i] = d[k] as f32;
+            }
+            far = far.max(o.abs().max_element());
+            let length = d.length();
+            eight.limit[i] = match random.below(4) {
+                0 => f32::INFINITY,
+                1 => (back / length) as f32,
+                2 => ((back + exp2i(-18) * random.uniform(-8.0, 8.0)) / length - radius) as f32,
+                _ => random.uniform(0.0, 3.0) as f32,
+            };
+        }
+        let pad = exp2i(-18) * (1.0 + far);
+        eight.pad = pad as f32;
+        let answers = vectorize(&eight);
+        assert_eq!(answers, (&eight).run(PortableLanes));
+        let edge = |k: usize| f64::from(eight.max[k] - eight.min[k]);
+        let ball = edge(0).max(edge(1)).max(edge(2)) * 0.5;
+        let middle = DVec3::from_array(core::array::from_fn(|k| {
+            0.5 * (f64::from(eight.min[k]) + f64::from(eight.max[k]))
+        }));
+        for i in 0..8 {
+            let (o, d) = eight.ray(i);
+            let limit = f64::from(eight.limit[i]);
+            // Without any pad it must be told, and with two it may not.
+            let [enter, leave] = eight.slab(i, 0.0);
+            let must = enter.max(0.0) <= leave.min(limit);
+            let [enter, leave] = eight.slab(i, 1.01 * pad);
+            let may = enter.max(0.0) <= leave.min(limit) * (1.0 + 1e-6);
+            check(&mut counts[0], answers[0] >> i & 1 == 1, must, may, &format!("box {case} {i}"));
+
+            let t = (middle - o).dot(d) / d.length_squared();
+            let passes = (middle - o - d * t).length();
+            let reach = |radius: f64| {
+                let half = (radius * radius - passes * passes).max(0.0).sqrt() / d.length();
+                [t - half, t + half]
+            };
+            let [enter, leave] = reach(ball);
+            let must = passes <= ball && enter.max(0.0) <= leave.min(limit);
+            let room = ball + 2.1 * pad;
+            let may = passes <= ball + 1.2 * pad + 1e-6 * ball && t + room >= 0.0 && t - room <= limit;
+            check(&mut counts[1], answers[1] >> i & 1 == 1, must, may, &format!("ball {case} {i}"));
+        }
+    }
+    // Told and rightly so, not told and rightly so; where neither is certain either would do.
+    assert!(counts.iter().all(|[told, untold, _]| told.min(untold) > &5000), "{counts:?}");
+}
+
+/// The thickness of a box of which every third is thin.
+fn random_edge(case: usize) -> f64 {
+    [0.01, 0.3, 1.0][case / 3 % 3]
+}
+
+fn check(counts: &mut [u32; 3], told: bool, must: bool, may: bool, what: &str) {
+    assert!(told || !must, "{what}: is not told");
+    assert!(may || !told, "{what}: told in vain");
+    counts[if must {
+        0
+    } else if may {
+        2
+    } else {
+        1
+    }] += 1;
 }

@@ -106,7 +106,7 @@ fn ends<P: Product>(p: &Polynomial) -> [Knot; 2] {
     let bound = p.bound_exponent();
     let end = if bound > 1023 { f64::MAX } else { ldexp(1.0, bound) };
     [-1, 1].map(|side| {
-        let x = Double::from(end * f64::from(side));
+        let x = Double::from(end.copysign(f64::from(side)));
         let sign = if bound <= 1023 { p.sign_at_infinity(side) } else { sign_of(p.at::<P>(x).value) };
         Knot { x, sign, reach: f64::INFINITY }
     })
@@ -285,4 +285,72 @@ fn middle(low: Double, high: Double) -> Double {
     let mean = (i128::from(key(a)) + i128::from(key(b))) / 2;
     let mean = mean as i64;
     Double::from(if mean < 0 { -f64::from_bits(mean.unsigned_abs()) } else { f64::from_bits(mean as u64) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+
+    /// The middle of a bracket lies in it, that of the mirrored one is mirrored, and halving towards any place ends at two
+    /// neighbouring numbers after as many steps as there are binary digits in a number, exponent and all.
+    #[test]
+    fn middles() {
+        let mut random = Random::new(1);
+        for case in 0..2000 {
+            let number = |random: &mut Random| match case % 4 {
+                0 => random.sign() * random.magnitude(-300.0, 300.0),
+                1 => random.uniform(-1.0, 1.0),
+                2 => 1.0 + random.magnitude(-15.0, -1.0),
+                _ => random.sign() * random.magnitude(-320.0, -290.0),
+            };
+            let [a, b, c] = [(); 3].map(|()| number(&mut random));
+            let (mut low, mut high) = (a.min(b).min(c), a.max(b).max(c));
+            let target = a.max(b).min(a.min(b).max(c));
+            let mut steps = 0;
+            while low.next_up() < high && low < high {
+                let m = middle(Double::from(low), Double::from(high));
+                let mirrored = middle(Double::from(-high), Double::from(-low));
+                assert_eq!((m.high, m.low), (-mirrored.high, -mirrored.low), "{low:e} {high:e}");
+                let m = m.high;
+                assert!(m >= low && m <= high, "{low:e} {high:e} {m:e}");
+                if m == low || m == high {
+                    break;
+                }
+                if m <= target {
+                    low = m
+                } else {
+                    high = m
+                }
+                steps += 1;
+            }
+            assert!(low.next_up().next_up() >= high, "{low:e} {high:e}");
+            assert!(steps <= 68, "{steps} {a:e} {b:e} {c:e}");
+        }
+    }
+
+    /// Small numbers in their own unit become `f64`, to the nearest where that is subnormal.
+    #[test]
+    fn reduced_numbers() {
+        let mut random = Random::new(2);
+        for _ in 0..2000 {
+            let k = random.below(170) as i32 - 120;
+            let high = random.sign() * random.uniform(1.0, 2.0) * exp2i(500 + k);
+            let low = high * exp2i(-54) * random.uniform(-1.0, 1.0);
+            let found = reduced(Double::sum(high, low));
+            // Once more with a subnormal sum in mind: the number over the least step, to the nearest.
+            let steps = high * exp2i(-526) + low * exp2i(-526);
+            let (whole, unit) = if steps.abs() < exp2i(52) {
+                (libm::rint(steps), f64::from_bits(1))
+            } else {
+                (high * exp2i(-600), exp2i(-1000))
+            };
+            let expected = whole * unit;
+            assert!(
+                (found.high - expected).abs()
+                    <= if steps.abs() < exp2i(52) { 0.0 } else { expected.abs() * exp2i(-52) },
+                "{found:?} {expected:e} {steps}"
+            );
+        }
+    }
 }

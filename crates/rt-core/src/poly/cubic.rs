@@ -369,4 +369,45 @@ mod tests {
         }
         assert!(answered > 3900, "{answered}");
     }
+
+    /// The quick way is for coefficients with exponents from -64 to 63, or zeros in the middle.
+    #[test]
+    fn what_the_quick_way_takes() {
+        let (least, most) = (exp2i(-64), exp2i(64));
+        for (x, taken) in [
+            (1.0, true),
+            (least, true),
+            (least.next_down(), false),
+            (most.next_down(), true),
+            (most, false),
+            (1e300, false),
+            (1e-300, false),
+            (f64::NAN, false),
+        ] {
+            for k in 0..4 {
+                for sign in [1.0, -1.0] {
+                    // Of like size, so that all roots are about 1.
+                    let mut c =
+                        [1.0, 3.5, -2.25, 1.5].map(|c| if taken { c * x.clamp(1e-18, 1e18) } else { c });
+                    if taken {
+                        c = c.map(|c| if c.abs() >= most { c * exp2i(-4) } else { c });
+                        c = c.map(|c| if c.abs() < least { c * exp2i(4) } else { c });
+                    }
+                    c[k] = sign * x;
+                    assert!(taken || run(Quick(c)).is_none(), "{c:?}");
+                }
+            }
+        }
+        for c in [
+            [1.0, 0.0, 0.0, 1.0],
+            [1.0, 0.0, -3.5, 1.0],
+            [1.0, -3.5, 0.0, 1.0],
+            [least, least, least, -least],
+        ] {
+            assert!(run(Quick(c)).is_some(), "{c:?}");
+        }
+        for c in [[0.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 0.0]] {
+            assert!(run(Quick(c)).is_none(), "{c:?}");
+        }
+    }
 }

@@ -315,3 +315,209 @@ fn near_root(c: &[f64; 5], y: f64) -> bool {
     // Six roundings of the sum of the magnitudes.
     value.abs() <= 8.0 * f64::EPSILON * size
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Task;
+    use crate::kernel::counted::counted;
+    use crate::math::exp2i;
+    use crate::testing::Random;
+
+    struct Fraction(Double);
+
+    impl Task for Fraction {
+        type Output = Option<(f64, f64)>;
+        fn run<P: Product>(self) -> Self::Output {
+            fraction::<P>(self.0)
+        }
+    }
+
+    /// A number of few digits is a fraction at once, another by continued fractions; what is none is told.
+    #[test]
+    fn fractions() {
+        let mut random = Random::new(1);
+        for case in 0..4000 {
+            let sign = random.sign();
+            let b = 1.0 + f64::from(random.below(90_000_000));
+            let a = b + floor(random.uniform(0.0, 1.0) * b);
+            let short = 1.0 + f64::from(random.below(1 << 26)) * (1.0 / 67_108_864.0);
+            // Known to 2^-60 only.
+            let off = exp2i(-61) * random.uniform(-1.0, 1.0);
+            let (y, few) = match case % 3 {
+                0 => (Double::from(sign * short) + off, true),
+                1 => (
+                    Double::from(a).div::<crate::kernel::Dekker>(Double::from(b)).scale_exact(sign) + off,
+                    false,
+                ),
+                _ => (Double::from(sign * random.uniform(1.0, 2.0)) + sign * exp2i(-55), false),
+            };
+            let (found, products) = counted(Fraction(y));
+            assert!(!few || products == 0, "{y:?} {products}");
+            match found {
+                Some((n, d)) => {
+                    // |n - d y| < d 2^-56, exactly.
+                    let miss = Double::from(n) - y.scale::<crate::kernel::Dekker>(d);
+                    assert!(miss.high.abs() <= d * exp2i(-56), "{y:?} {n} {d}");
+                    assert!(n.abs() <= 2.0 * d && d <= exp2i(27) && d >= 1.0, "{y:?} {n} {d}");
+                    if case % 3 == 0 {
+                        assert_eq!(n / d, sign * short);
+                    } else if case % 3 == 1 {
+                        assert_eq!(n * b, sign * a * d, "{y:?} {n} {d}");
+                    }
+                }
+                None => assert!(case % 3 == 2, "{y:?} {a} {b}"),
+            }
+        }
+    }
+
+    struct Order([f64; 5], f64, f64, usize);
+
+    impl Task for Order {
+        type Output = (u32, u32);
+        fn run<P: Product>(self) -> Self::Output {
+            let Order(c, n, d, degree) = self;
+            (multiplicity_at::<P>(&c, n, d, degree), order_of_zero::<P>(&c, n, d, degree))
+        }
+    }
+
+    /// How often a fraction is a root, by division and by derivatives: of polynomials whose coefficients have few digits and
+    /// whose products have many.
+    #[test]
+    fn orders_of_zeros() {
+        let mut random = Random::new(2);
+        let mut count = [0; 5];
+        for case in 0..4000 {
+            let most = if case % 2 == 0 { 12 } else { 1000 };
+            let number = |random: &mut Random| f64::from(random.below(most)) + 1.0;
+            let (n, d) = (number(&mut random) * random.sign(), number(&mut random));
+            // Times other factors, of which some have the same root, to a degree of at most four.
+            let times = random.below(5) as usize;
+            let mut c = [number(&mut random), 0.0, 0.0, 0.0, 0.0];
+            let (mut expected, mut exact) = (0, true);
+            for i in 0..4 {
+                let same = i < times;
+                let (p, q) = if same { (n, d) } else { (number(&mut random), number(&mut random)) };
+                exact &= c.iter().all(|c| c.abs() * p.abs().max(q) < exp2i(53));
+                c = core::array::from_fn(|k| if k == 0 { -p * c[0] } else { q * c[k - 1] - p * c[k] });
+                expected += u32::from(p * d == n * q);
+            }
+            if !exact {
+                continue;
+            }
+            let (found, by_derivatives) = counted(Order(c, n, d, 4)).0;
+            assert_eq!((found, by_derivatives), (expected, expected), "{c:?} {n} {d}");
+            count[expected as usize] += 1;
+        }
+        assert!(count.iter().all(|&count| count > 200), "{count:?}");
+    }
+
+    struct Square([f64; 5]);
+
+    impl Task for Square {
+        type Output = bool;
+        fn run<P: Product>(self) -> bool {
+            is_real_square::<P>(&self.0)
+        }
+    }
+
+    /// Squares of quadratics with real roots are told from those of others, and from all neighbours.
+    #[test]
+    fn squares_of_quadratics() {
+        let mut random = Random::new(3);
+        let mut count = [0; 3];
+        for case in 0..4000 {
+            let number = |random: &mut Random| f64::from(random.below(4000)) - 2000.0;
+            let lead = [1.0, 3.0, -1.0, -5.0][case % 4];
+            let (u, v) = (if case % 3 == 0 { 0.0 } else { number(&mut random) }, number(&mut random) * 64.0);
+            let mut c = [v * v, 2.0 * u * v, u * u + 2.0 * v, 2.0 * u, 1.0].map(|c| c * lead);
+            assert_eq!(counted(Square(c)).0, u * u >= 4.0 * v && (u, v) != (0.0, 0.0), "{u} {v}");
+            count[usize::from(u * u >= 4.0 * v)] += 1;
+            let k = random.below(4) as usize;
+            c[k] = if c[k] == 0.0 {
+                1e-300
+            } else if random.once_in(2) {
+                c[k].next_up()
+            } else {
+                -c[k]
+            };
+            // Changing the sign of u makes it another square.
+            if c[k] != 0.0 && !(k % 2 == 1 && u == 0.0) {
+                let again = counted(Square(c)).0;
+                count[2] += u32::from(!again);
+                assert!(!again || c[1] * c[1] * c[4] == c[3] * c[3] * c[0], "{c:?}");
+            }
+        }
+        assert!(count[0] > 700 && count[1] > 700 && count[2] > 3000, "{count:?}");
+    }
+
+    struct Shifted<'a>(&'a Polynomial, f64);
+
+    impl Task for Shifted<'_> {
+        type Output = Polynomial;
+        fn run<P: Product>(self) -> Polynomial {
+            shifted::<P>(self.0, self.1)
+        }
+    }
+
+    /// The polynomial in another variable has the coefficients of the binomial theorem, exactly as far as two numbers go.
+    #[test]
+    fn developed_about_a_place() {
+        let mut random = Random::new(4);
+        for case in 0..2000 {
+            let number = |random: &mut Random| f64::from(random.below(2000)) - 1000.0;
+            let c: [f64; 5] = core::array::from_fn(|_| number(&mut random));
+            if c[4] == 0.0 || c[0] == 0.0 {
+                continue;
+            }
+            // Whole numbers, so that the development is exact in whole numbers, too.
+            let s = number(&mut random) + 0.5 * f64::from(case % 2);
+            if s == 0.0 {
+                continue;
+            }
+            let p = Polynomial::new(&c.map(Double::from));
+            let about = counted(Shifted(&p, s)).0;
+            // Coefficients by the binomial theorem: below 2^53 in absolute value times 16.
+            let mut expected = [0_i128; 5];
+            let twice = (2.0 * s) as i128;
+            for (i, &c) in c.iter().enumerate() {
+                for (k, expected) in expected.iter_mut().enumerate().take(i + 1) {
+                    let choose =
+                        [[1, 0, 0, 0, 0], [1, 1, 0, 0, 0], [1, 2, 1, 0, 0], [1, 3, 3, 1, 0], [1, 4, 6, 4, 1]]
+                            [i][k];
+                    // Sixteen times the coefficient: c C(i, k) s^(i - k), with s half a whole number.
+                    *expected +=
+                        c as i128 * choose * twice.pow((i - k) as u32) * 2_i128.pow(4 - (i - k) as u32);
+                }
+            }
+            let local = about.local(Double::ONE);
+            // Up to the common power of two, that of the leading coefficient.
+            let unit = c[4] / local.c[4].high;
+            for (k, expected) in expected.into_iter().enumerate() {
+                let found = (local.c[k].high * unit * 16.0) as i128 + (local.c[k].low * unit * 16.0) as i128;
+                assert_eq!(found, expected, "{c:?} {s} {k}");
+            }
+        }
+    }
+
+    /// A sum of parts of any size, to twice the precision of its largest.
+    #[test]
+    fn rounded_to_two_numbers() {
+        let mut random = Random::new(5);
+        for _ in 0..4000 {
+            let mut sum = Expansion::zero();
+            let mut truth = crate::expansion::Expansion::ZERO;
+            for _ in 0..8 {
+                let part = random.sign() * random.uniform(1.0, 2.0) * exp2i(random.below(200) as i32 - 100);
+                sum.add(part);
+                truth.add(part);
+            }
+            let found = sum.to_double();
+            assert_eq!(sum.sign().signum(), found.high.signum());
+            truth.add(-found.high);
+            let low = truth.rounded().to_f64();
+            assert!((low - found.low).abs() <= exp2i(-52) * low.abs(), "{found:?} {low:e}");
+            assert!(found.low.abs() <= exp2i(-53) * found.high.abs());
+        }
+    }
+}

@@ -258,6 +258,7 @@ impl Local {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec::Vec;
 
     #[test]
     fn powers_of_two_of_any_size() {
@@ -268,5 +269,151 @@ mod tests {
         }
         assert_eq!(ldexp(f64::from_bits(1), 2097), exp2i(1023));
         assert_eq!((ldexp(1.0, 2000), ldexp(1.0, -2000)), (f64::INFINITY, 0.0));
+    }
+
+    use crate::kernel::{Dekker, Task, run};
+    use crate::testing::Random;
+
+    /// A polynomial with roots of these sizes, ascending, and its coefficients.
+    fn with_roots(random: &mut Random, exponents: &[i32], lead: i32) -> (Polynomial, [f64; 5], Vec<f64>) {
+        let roots: Vec<f64> =
+            exponents.iter().map(|&e| random.sign() * random.uniform(1.0, 2.0) * exp2i(e)).collect();
+        let mut c = [exp2i(lead) * random.uniform(1.0, 2.0), 0.0, 0.0, 0.0, 0.0];
+        for root in &roots {
+            c = core::array::from_fn(|k| if k == 0 { -root * c[0] } else { c[k - 1] - root * c[k] });
+        }
+        (Polynomial::new(&c.map(Double::from)), c, roots)
+    }
+
+    /// All roots lie between the bounds, which are not much too wide.
+    #[test]
+    fn bounds_of_roots() {
+        let mut random = Random::new(1);
+        for case in 0..4000 {
+            let degree = 1 + case % 4;
+            let mut e = random.below(200) as i32 - 100;
+            let exponents: Vec<i32> = (0..degree)
+                .map(|_| {
+                    e += random.below(if case % 8 < 4 { 2 } else { 40 }) as i32;
+                    e
+                })
+                .collect();
+            let lead = random.below(100) as i32 - 50;
+            let (p, c, roots) = with_roots(&mut random, &exponents, lead);
+            assert_eq!(p.degree(), degree);
+            // A root's own exponent, and one more to be beyond it.
+            let (least, most) = (exponents[0], exponents[degree - 1] + 1);
+            let found = p.bound_exponent();
+            assert!((most..=most + 6).contains(&found), "{roots:?} {found}");
+            let found = p.least_exponent();
+            assert!((least - 6..=least).contains(&found), "{roots:?} {found}");
+            // The same of multiples and in other units, and of the polynomial times x.
+            let units = p.in_units(-30);
+            assert_eq!(
+                (units.bound_exponent(), units.least_exponent()),
+                (p.bound_exponent() + 30, p.least_exponent() + 30)
+            );
+            if degree < 4 {
+                let shifted = Polynomial::new(&[0.0, c[0], c[1], c[2], c[3]].map(Double::from));
+                assert!(shifted.vanishes_at_zero() && !p.vanishes_at_zero());
+                assert_eq!(shifted.bound_exponent(), p.bound_exponent());
+                assert_eq!(shifted.least_exponent(), p.least_exponent());
+                let back = shifted.deflated();
+                assert_eq!((back.degree(), back.least_exponent()), (degree, p.least_exponent()));
+            }
+            // Where the sign at the ends leads.
+            for side in [-1, 1] {
+                let far = f64::from(side) * exp2i(p.bound_exponent() + 2);
+                let value = c[..=degree].iter().rev().fold(0.0, |v, c| v * far + c);
+                assert_eq!(p.sign_at_infinity(side), if value > 0.0 { 1 } else { -1 }, "{c:?}");
+            }
+            // Whether the least root is positive, where it is by far the least.
+            if degree > 1 && exponents[0] < exponents[1] - 4 {
+                assert_eq!(p.falls_through_zero(), roots[0] > 0.0, "{roots:?}");
+            }
+        }
+    }
+
+    struct At<'a>(&'a Polynomial, Double);
+
+    impl Task for At<'_> {
+        type Output = (Value, Local);
+        fn run<P: Product>(self) -> Self::Output {
+            (self.0.at::<P>(self.1), self.0.local(self.1))
+        }
+    }
+
+    /// Values of any size are exact but for their bound, which is that of the sizes of the terms; and so are the derivatives
+    /// but for roundings.
+    #[test]
+    fn values_and_derivatives() {
+        let mut random = Random::new(2);
+        for case in 0..4000 {
+            let degree = 1 + case % 4;
+            let e = random.below(400) as i32 - 200;
+            let (lead, exponents) = (random.below(100) as i32 - 50, [e, e + 1, e + 2, e + 3]);
+            let (p, c, roots) = with_roots(&mut random, &exponents[..degree], lead);
+            // At a root, next to one, anywhere, and at zero.
+            let x = match case / 4 % 4 {
+                0 => Double::from(roots[0]),
+                1 => Double::from(roots[0]) + roots[0] * random.magnitude(-30.0, -1.0),
+                2 => Double::from(random.sign() * random.uniform(1.0, 8.0) * exp2i(e)),
+                _ => Double::ZERO,
+            };
+            let (v, local) = run(At(&p, x));
+            assert!(!local.dropped);
+            let scale = |x: Double, k: i32| x.scale_exact(exp2i(k / 2)).scale_exact(exp2i(k - k / 2));
+            // The same terms, once more by their definition: with the common power of two that the largest has.
+            let exponent = if x.high == 0.0 { v.exponent } else { crate::math::exponent(x.high) };
+            assert_eq!(v.exponent, exponent);
+            let y = scale(x, -exponent);
+            let power =
+                (0..=degree).map(|k| crate::math::exponent(c[k]) + exponent * k as i32).max().unwrap();
+            let terms: [Double; 5] = core::array::from_fn(|k| {
+                if k > degree { Double::ZERO } else { scale(Double::from(c[k]), exponent * k as i32 - power) }
+            });
+            let mut exact = crate::expansion::Expansion::ZERO;
+            let (mut powers, mut size, mut slope, mut bend) = ([Double::ONE; 5], 0.0, 0.0, 0.0);
+            for k in 0..5 {
+                if k > 0 {
+                    powers[k] = powers[k - 1].mul::<Dekker>(y);
+                }
+                exact.add_double_product::<Dekker>(powers[k], terms[k]);
+                size += (powers[k].high * terms[k].high).abs();
+                let n = k as f64;
+                if k > 0 {
+                    slope += n * terms[k].high * powers[k - 1].high;
+                }
+                if k > 1 {
+                    bend += 0.5 * n * (n - 1.0) * terms[k].high * powers[k - 2].high;
+                }
+            }
+            let off = (exact.rounded() - v.value).high.abs();
+            // The powers of y here are rounded, too.
+            assert!(off <= v.error + exp2i(-101) * size, "{c:?} {x:?}: {off:e} {:e}", v.error);
+            assert!((v.error / (exp2i(-100) * size) - 1.0).abs() < 1e-9, "{:e} {size:e}", v.error);
+            let sizes = size * 16.0 / if y.high == 0.0 { 1e-9 } else { 1.0 };
+            assert!((v.slope - slope).abs() <= 1e-14 * sizes && (v.curvature - bend).abs() <= 1e-14 * sizes);
+        }
+    }
+
+    /// The derivative of a polynomial has the slopes of it.
+    #[test]
+    fn derivatives() {
+        let mut random = Random::new(3);
+        for case in 0..1000 {
+            let degree = 1 + case % 4;
+            let (p, c, _) = with_roots(&mut random, &[0, 1, 1, 2][..degree], 0);
+            let d = p.derivative();
+            assert_eq!(d.degree(), degree - 1);
+            let x = random.uniform(-4.0, 4.0);
+            let (v, local) = run(At(&d, Double::from(x)));
+            let expected = (1..=degree).rev().fold(0.0, |sum, k| sum * x + k as f64 * c[k]);
+            let size = (1..=degree).rev().fold(0.0, |sum, k| sum * x.abs() + k as f64 * c[k].abs());
+            // Up to the common power of two.
+            let k = (0..degree).find(|&k| local.c[k].high != 0.0).unwrap();
+            let unit = (k + 1) as f64 * c[k + 1] / local.c[k].high * exp2i(local.exponent * k as i32);
+            assert!((v.value.to_f64() * unit - expected).abs() <= 1e-14 * size, "{c:?} {x}");
+        }
     }
 }

@@ -181,16 +181,13 @@ impl Task for InDisk<'_> {
     type Output = bool;
     #[inline(always)]
     fn run<P: Product>(self) -> bool {
-        // In units of the radius, so that no square over- or underflows; far outside is decided before.
+        // In units of the radius, so that no square that matters over- or underflows; from farther away than squares reach it
+        // is infinite or NaN, and the comparison false.
         let power = crate::math::exponent(self.radius);
         let radius = times_power(self.radius, -power);
         let shift = self.at.power - power;
         let part = |x: Double| Double { high: times_power(x.high, shift), low: times_power(x.low, shift) };
         let [x, y, z] = self.at.local.map(part);
-        let far = |x: Double| x.high.is_nan() || x.high.abs() > 4.0;
-        if far(x) || far(y) || far(z) {
-            return false;
-        }
         let square = x.square::<P>() + y.square::<P>() + z.square::<P>();
         square <= Double::product::<P>(radius, radius)
     }
@@ -322,6 +319,27 @@ mod tests {
     }
 
     /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
+    /// Places beyond the reach of squares are outside, as is what is no number.
+    #[test]
+    fn far_outside() {
+        for (x, power, inside) in [
+            (0.5, 0, true),
+            (1.0, 0, true),
+            (1.5, 0, false),
+            (1.0, 600, false),
+            (1.0, 1000, false),
+            (f64::INFINITY, 0, false),
+            (f64::NAN, 0, false),
+        ] {
+            for k in 0..3 {
+                let mut local = [crate::double::Double::ZERO; 3];
+                local[k] = crate::double::Double::from(x);
+                let at = Meeting { t: 1.0, local, power, error: 0.0 };
+                assert_eq!(run(InDisk { at: &at, radius: 1.0 }), inside, "{x} {power} {k}");
+            }
+        }
+    }
+
     #[test]
     fn plainly_as_exactly() {
         let mut random = crate::testing::Random::new(1);
@@ -346,6 +364,12 @@ mod tests {
             assert_eq!(found.is_some(), inside, "{disk:?} {ray:?}");
             if let Some(hit) = found {
                 assert!((hit.t() - at.t).abs() <= exp2i(-30), "{disk:?} {ray:?}");
+            }
+            if case < 4000 {
+                // An interval that ends before the disk, or begins after it, is told at once as well.
+                for within in [Interval::FORWARD.until(0.99 * at.t), Interval::FORWARD.after(1.01 * at.t)] {
+                    assert!(matches!(disk.plainly(&ray, within), Ok(None)), "{disk:?} {ray:?}");
+                }
             }
             count[1 + usize::from(inside)] += 1;
         }

@@ -294,7 +294,7 @@ fn place_exactly<P: Product>(
     let mut local = [0, 1, 2].map(|i| t.scale::<P>(d[i]) - w[i]);
     // The quotient errs by 2^-102 of itself, the product and the difference by 2^-103 of their operands.
     let mut error = exp2i(-99) * (2.0 + 2.0 * t.high.abs());
-    let largest = local.iter().fold(0.0_f64, |m, x| if x.high.abs() > m { x.high.abs() } else { m });
+    let largest = local.iter().fold(0.0_f64, |m, x| m.max(x.high.abs()));
     // A place near the anchor met from afar: without the difference of large numbers.
     if plane.offset == 0.0 && largest < exp2i(-40) * t.high.abs() {
         local = near_anchor::<P>(&plane.normal, w, d, denominator);
@@ -405,5 +405,61 @@ mod tests {
             assert!((size / (terms + rough.high.abs()) - 1.0).abs() < 1e-15, "{size} {terms}");
             assert!((rest - rough.low).high.abs() <= exp2i(-99) * size, "{a} {b}");
         }
+    }
+
+    struct Exactly<'a>(&'a ExactPlane, [Double; 3], DVec3);
+
+    impl Task for Exactly<'_> {
+        type Output = Option<Place>;
+        fn run<P: Product>(self) -> Option<Place> {
+            let Exactly(plane, w, d) = self;
+            let normal = plane.normal.map(|n| {
+                let mut sum = Expansion::ZERO;
+                sum.add(n.low);
+                sum.add(n.high);
+                sum
+            });
+            place_exactly::<P>(&normal, plane, plane.offset, &w, d)
+        }
+    }
+
+    /// What exact sums find lies on the ray and in the plane, within its bound: far or near, with the plane through the anchor
+    /// or beside it, where the ray aims at the anchor and where it does not.
+    #[test]
+    fn places_by_exact_sums() {
+        let mut random = Random::new(3);
+        let (mut near, mut count) = (0, 0);
+        for case in 0..4000 {
+            let n = random.direction();
+            let offset = [0.0, random.magnitude(-30.0, -1.0) * random.sign()][case % 2];
+            let plane = ExactPlane { anchor: DVec3::ZERO, normal: doubles(n), axis: None, offset };
+            // The direction has components of a few digits, so that a place beside the anchor is known exactly: w is the
+            // way back, and a little.
+            let grid = |v: DVec3| (v * exp2i(20)).round() * exp2i(-20);
+            let d = grid(random.direction() * 1.4);
+            let aim = random.in_cube() * if case % 4 < 2 { 1.0 } else { random.magnitude(-25.0, -8.0) };
+            let way = grid(DVec3::splat(random.uniform(1.0, 1.4))).x;
+            let (back, aim) = (d * way, aim.to_array());
+            let w = core::array::from_fn(|k| Double::from(back[k]) - aim[k]);
+            let Some(Place { t, local, error }) = run(Exactly(&plane, w, d)) else { continue };
+            count += 1;
+            let cosine = d.dot(n).abs() / d.length();
+            // Of the ray: local = t d - w.
+            let dekker = |t: Double, d: f64| t.scale::<crate::kernel::Dekker>(d);
+            for k in 0..3 {
+                let off = (local[k] - (dekker(t, d[k]) - w[k])).high.abs();
+                assert!(off <= 2.0 * error + exp2i(-97) * t.high.abs(), "{case} {k} {off:e} {error:e}");
+            }
+            let sum = (0..3).fold(Double::from(-offset), |sum, k| sum + dekker(local[k], n[k]));
+            assert!(sum.high.abs() <= 3.0 * error, "{case}: {sum:?} {error:e}");
+            let least = largest(DVec3::from_array(local.map(|x| x.high)));
+            assert!(error >= exp2i(-103) * least && error <= exp2i(-96) * (1.0 + t.high.abs()), "{error:e}");
+            if offset == 0.0 && least < exp2i(-45) * t.high.abs() {
+                near += 1;
+                assert!(error <= exp2i(-98) * least, "{error:e} {least:e}");
+            }
+            assert!(cosine > 0.0);
+        }
+        assert!(count > 3900 && near > 300, "{count} {near}");
     }
 }

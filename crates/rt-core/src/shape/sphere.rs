@@ -430,7 +430,7 @@ impl Task for FindRescaled<'_> {
             let length = local.length_squared::<P>().sqrt::<P>();
             local = local.mul::<P>(Double::from(radius).div::<P>(length));
         }
-        let half = sqrt(if chord.depth.high > 0.0 { chord.depth.high } else { 0.0 });
+        let half = sqrt(chord.depth.high.max(0.0));
         Refined { t: chord.shift + s, local, error: uncertainty(half) }
     }
 }
@@ -531,5 +531,128 @@ mod tests {
             let found = span.first(Interval::new(min, max)).map(|hit| hit.map(|hit| (hit.t(), hit.root())));
             assert_eq!(found, expected, "{min} {max}");
         }
+    }
+
+    use crate::testing::Random;
+
+    /// A sphere about zero, its slack, and a ray from some sizes away that passes it by this share of the radius.
+    fn passing(random: &mut Random, depth: f64, distance: f64) -> (Sphere, Ray) {
+        let sphere = Sphere::new(DVec3::ZERO, random.uniform(0.5, 2.0)).unwrap();
+        let along = random.direction();
+        let across = along.cross(random.direction()).normalize();
+        let target = across * (sphere.radius * (1.0 - depth));
+        (sphere, Ray::new(target - along * (distance * sphere.radius), along * random.magnitude(-2.0, 2.0)))
+    }
+
+    /// Whatever plain numbers decide of a line next to the edge is true, and they decide all but the nearest.
+    #[test]
+    fn what_is_decided_plainly_is_true() {
+        let mut random = Random::new(1);
+        let mut count = [[0; 3]; 3];
+        for case in 0..40_000 {
+            let depth = random.sign() * random.magnitude(-17.5, -8.0);
+            let distance = if case % 2 == 0 { random.uniform(-1.5, 1.5) } else { random.magnitude(0.0, 5.0) };
+            let (sphere, ray) = passing(&mut random, depth, distance);
+            let (w, d) = (ray.origin, ray.direction);
+            let (scaled, chord) = sphere.scaled(&ray).unwrap();
+            let crosses = chord.depth.high > 0.0;
+            let exact = chord.at.map(|at| scaled.unscale(chord.shift + at).high);
+            // How clear it is, in roundings of the sizes.
+            let clear = depth.abs() / (distance.abs() + 2.0);
+            let check = |at: [f64; 2], margin: f64| {
+                assert!(crosses, "{sphere:?} {ray:?}");
+                for (at, exact) in at.iter().zip(exact) {
+                    assert!((at - exact).abs() <= margin, "{sphere:?} {ray:?}: {at} {exact} {margin:e}");
+                }
+                let half = 0.5 * (exact[1] - exact[0]);
+                assert!(margin <= exp2i(-12) * half, "{margin} {half}");
+            };
+            let decided = match line(sphere.square, w, d) {
+                Line::Chord(span) => {
+                    check([span.enter, span.leave], span.margin);
+                    true
+                }
+                Line::Miss => {
+                    assert!(!crosses, "{sphere:?} {ray:?}");
+                    true
+                }
+                Line::Doubt => false,
+            };
+            count[0][usize::from(decided)] += 1;
+            // The square of the distance counts there, which is why lines from afar are not decided so early.
+            assert!(decided || clear / (distance.abs() + 2.0) < exp2i(-33), "{clear:e} {distance}");
+            let approach = Approach::new(sphere.radius, sphere.square, w, d);
+            let decided = match approach.chord() {
+                Some(span) => {
+                    check([span.enter, span.leave], span.margin);
+                    true
+                }
+                None if approach.misses() => {
+                    assert!(!crosses, "{sphere:?} {ray:?}");
+                    true
+                }
+                None => false,
+            };
+            count[1][usize::from(decided)] += 1;
+            assert!(
+                decided || clear < if depth > 0.0 { exp2i(-33) } else { exp2i(-47) },
+                "{clear:e} {depth:e}"
+            );
+            let outside = crate::scaled::passes_outside(sphere.radius, exp2i(-50) * sphere.radius, w, d);
+            assert!(!outside || !crosses, "{sphere:?} {ray:?}");
+            count[2][usize::from(outside)] += 1;
+            assert!(outside || depth > 0.0 || clear < exp2i(-46), "{clear:e} {depth:e}");
+        }
+        assert!(count.iter().all(|count| count[0].min(count[1]) > 3000), "{count:?}");
+    }
+
+    struct First(DoubleVector, DVec3, f64, f64, u32);
+
+    impl Task for First {
+        type Output = Option<Refined>;
+        fn run<P: Product>(self) -> Self::Output {
+            newton::<P>(&self.0, self.1, self.2, self.3, self.4)
+        }
+    }
+
+    /// Newton's steps answer where the chord is longer than 2^-30 of the distance, as the closed form does; and not where it is
+    /// shorter, nor for a hit on the wrong side.
+    #[test]
+    fn newton_answers_until_the_chord_is_short() {
+        let mut random = Random::new(2);
+        let mut count = [0; 2];
+        for case in 0..4000 {
+            let depth = random.magnitude(-19.0, -0.5);
+            let distance = if case % 2 == 0 { random.uniform(0.0, 3.0) } else { random.magnitude(0.0, 4.0) };
+            let (sphere, ray) = passing(&mut random, depth, distance);
+            let (scaled, chord) = sphere.scaled(&ray).unwrap();
+            if chord.depth.high <= 0.0 {
+                continue;
+            }
+            let size = largest(ray.origin) + sphere.radius;
+            for root in 0..2 {
+                let at = scaled.unscale(chord.shift + chord.at[root]);
+                let relative = DoubleVector::from(ray.origin);
+                let find = |root| kernel::run(First(relative, ray.direction, sphere.radius, at.high, root));
+                let found = find(root as u32);
+                if let Some(found) = &found {
+                    let off = (found.t - at).high.abs() * ray.direction.length();
+                    assert!(off <= exp2i(-70) * sphere.radius, "{sphere:?} {ray:?} {off:e}");
+                    assert!(
+                        found.error >= exp2i(-72) * sphere.radius && found.error < exp2i(-60) * sphere.radius
+                    );
+                }
+                let chord = (chord.at[1] - chord.at[0]).high * exp2i(scaled.power) * ray.direction.length();
+                if chord > exp2i(-28) * size {
+                    count[0] += 1;
+                    assert!(found.is_some(), "{sphere:?} {ray:?} {chord:e}");
+                    assert!(find(1 - root as u32).is_none());
+                } else if chord < exp2i(-31) * size {
+                    count[1] += 1;
+                    assert!(found.is_none(), "{sphere:?} {ray:?} {chord:e}");
+                }
+            }
+        }
+        assert!(count[0] > 3000 && count[1] > 100, "{count:?}");
     }
 }

@@ -122,3 +122,48 @@ fn rays_side_by_side_are_answered_together() {
         }
     }
 }
+
+/// A packet of which either half goes side by side, but not with the other, is answered by halves.
+#[test]
+fn halves_are_answered_together() {
+    use super::super::query::Nearest;
+    use crate::shape::Sphere;
+    use crate::{Interval, Ray};
+    let mut random = Random::new(4);
+    let mut builder = Geometry::builder();
+    for _ in 0..500 {
+        builder.push(Sphere::new(random.in_cube(), random.uniform(0.02, 0.1)).unwrap());
+    }
+    let geometry = builder.build();
+    for case in 0..60 {
+        let spread = random.magnitude(-4.0, -1.5);
+        let towards = [random.in_cube(), -random.in_cube()];
+        let origins = [DVec3::new(3.0, 0.1, 0.2), DVec3::new(0.3, -3.0, 0.1)];
+        // Of some only one half has enough rays.
+        let few = if case % 3 == 0 { 3 } else { 16 };
+        let rays: Vec<Ray> = (0..PACKET)
+            .map(|i| {
+                let origin = origins[i / 16];
+                Ray::new(
+                    origin + random.in_cube() * spread,
+                    towards[i / 16] + random.in_cube() * spread - origin,
+                )
+            })
+            .collect();
+        let within = [Interval::FORWARD; PACKET];
+        let mut side = Side::EMPTY;
+        assert!(geometry.frame.enter_together(PortableLanes, &rays, &within, &mut side));
+        let queries = core::array::from_fn(|i| {
+            Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
+        });
+        let active = ((1_u64 << (16 + few)) - 1) as u32;
+        let mut packet = Packet { rays: &rays, side, queries, active };
+        let done = packet.search(PortableLanes, &geometry);
+        assert_eq!(done, if few == 16 { active } else { 0xffff }, "{case}");
+        for (i, (ray, query)) in rays.iter().zip(&packet.queries).enumerate() {
+            if done >> i & 1 == 1 && query.contested().is_none() {
+                assert_eq!(query.best(), geometry.nearest(ray, Interval::FORWARD));
+            }
+        }
+    }
+}

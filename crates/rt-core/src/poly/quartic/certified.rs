@@ -342,6 +342,51 @@ mod tests {
         assert!(seen[0] > 990 && seen[1..] == [1000; 5], "{seen:?}");
     }
 
+    /// Balanced, the leading coefficient is about 1 and so is the greatest root; the exponents of the greatest and the least
+    /// root are told, whether or not zero is a root too; and each mantissa stays.
+    #[test]
+    fn balanced_coefficients() {
+        let mut random = Random::new(3);
+        for case in 0..4000 {
+            let mut power = random.below(100) as i32 - 50;
+            let mut roots: [f64; 4] = core::array::from_fn(|_| {
+                power += random.below(if case % 2 == 0 { 30 } else { 2 }) as i32;
+                random.sign() * random.uniform(1.0, 2.0) * exp2i(power)
+            });
+            let none = case % 4 == 1;
+            if none {
+                roots[0] = 0.0;
+            }
+            let lead = random.uniform(1.0, 2.0) * exp2i(random.below(100) as i32 - 50);
+            let mut c = [lead, 0.0, 0.0, 0.0, 0.0];
+            for root in roots {
+                c = core::array::from_fn(|k| if k == 0 { -root * c[0] } else { c[k - 1] - root * c[k] });
+            }
+            let (y, k, spread) = balanced(&c).unwrap();
+            let greatest = exponent(roots[3]);
+            let least = exponent(roots[usize::from(none)]);
+            assert!((greatest - 3..=greatest + 4).contains(&k), "{c:?} {k} {greatest}");
+            assert!((k - least - 3..=k - least + 4).contains(&spread), "{c:?} {k} {spread} {least}");
+            assert!((1.0..2.0).contains(&y[4].abs()));
+            for (i, (y, c)) in y.into_iter().zip(c).enumerate() {
+                assert_eq!(y == 0.0, c == 0.0);
+                if c != 0.0 {
+                    assert_eq!(y, c * exp2i(k * i as i32 - 4 * k) * exp2i(-exponent(lead)), "{c:?} {i}");
+                }
+            }
+        }
+        // Zero as a double root, a leading zero, numbers that are not normal, and roots beyond the range of products.
+        for c in [
+            [0.0, 0.0, 1.0, 2.0, 3.0],
+            [1.0, 2.0, 3.0, 4.0, 0.0],
+            [1.0, 1e-310, 0.0, 0.0, 1.0],
+            [exp2i(-900), 1.0, 1.0, 1.0, 1.0],
+            [1.0, 0.0, 0.0, exp2i(310), 1.0],
+        ] {
+            assert!(balanced(&c).is_none(), "{c:?}");
+        }
+    }
+
     struct Quick([f64; 5]);
 
     impl Task for Quick {

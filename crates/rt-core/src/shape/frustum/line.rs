@@ -199,3 +199,82 @@ impl Task for Quotient {
         quotient::<P>(self.0, self.1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line whose numbers are these; along the axis it runs with speed 1 from this height.
+    fn line(z: f64, z_growth: f64, [e1, a, c, depth]: [f64; 4], side: [f64; 2]) -> Line {
+        let [z, z_growth, e1, a, c, depth] = [z, z_growth, e1, a, c, depth].map(Double::from);
+        let side = side.map(Double::from);
+        let (shift, start, height) = (Double::ZERO, DoubleVector::default(), Double::ONE);
+        Line { shift, start, z, z_growth, height, e1, a, c, depth, side }
+    }
+
+    /// What a line has in common with slab and side, and where one leaves that is known to be inside.
+    #[test]
+    fn spans_and_exits() {
+        let (never, always) = (f64::NEG_INFINITY, f64::INFINITY);
+        let across = [0.0, 1.0, -1.0, 1.0];
+        // Height and growth, numbers of the side, its crossings; first and last crossing and their parts; the exit from the
+        // side of a closed one, and that from a cap.
+        type Expected = (Option<[(f64, u32); 2]>, (f64, u32), (f64, u32));
+        type Case = (f64, f64, [f64; 4], [f64; 2], Expected);
+        let cases: [Case; 13] = [
+            // Up and down between the caps, or through them.
+            (0.5, 0.1, across, [-1.0, 1.0], (Some([(-1.0, SIDE), (1.0, SIDE)]), (1.0, SIDE), (1.0, SIDE))),
+            (0.5, 1.0, across, [-1.0, 1.0], (Some([(-0.5, BASE), (0.5, TOP)]), (0.5, TOP), (0.5, TOP))),
+            (0.5, -1.0, across, [-1.0, 1.0], (Some([(-0.5, TOP), (0.5, BASE)]), (0.5, BASE), (0.5, BASE))),
+            (0.5, -1.0, across, [-0.25, 1.0], (Some([(-0.25, SIDE), (0.5, BASE)]), (0.5, BASE), (0.5, BASE))),
+            // Past the rim, and past the side by rounding.
+            (2.5, 1.0, across, [-1.0, 1.0], (None, (-1.5, TOP), (-1.5, TOP))),
+            (0.5, 1.0, [0.0, 1.0, 1.0, -1.0], [5.0, 5.0], (None, (never, SIDE), (never, SIDE))),
+            (0.5, 1.0, [0.0, 1.0, 0.0, 0.0], [0.0, 0.0], (None, (never, SIDE), (never, SIDE))),
+            // Through the very rim.
+            (0.5, 1.0, across, [0.5, 1.0], (None, (0.5, TOP), (0.5, TOP))),
+            // Along the slab, in it and in or beside a cap.
+            (0.5, 0.0, across, [-1.0, 1.0], (Some([(-1.0, SIDE), (1.0, SIDE)]), (1.0, SIDE), (1.0, SIDE))),
+            (1.0, 0.0, across, [-1.0, 1.0], (None, (never, BASE), (never, TOP))),
+            // Along the axis of a cylinder.
+            (
+                0.5,
+                1.0,
+                [0.0, 0.0, -1.0, 0.0],
+                [always, always],
+                (Some([(-0.5, BASE), (0.5, TOP)]), (0.5, TOP), (0.5, TOP)),
+            ),
+            // Steeper than the side: towards larger radii it never leaves, towards smaller ones it was always inside.
+            (
+                0.5,
+                1.0,
+                [0.5, -1.0, -1.0, 1.0],
+                [-0.25, 0.25],
+                (Some([(-0.25, SIDE), (0.5, TOP)]), (0.5, TOP), (0.5, TOP)),
+            ),
+            (
+                0.5,
+                1.0,
+                [-0.5, -1.0, -1.0, 0.0],
+                [-0.25, 0.25],
+                (Some([(-0.5, BASE), (0.25, SIDE)]), (0.25, SIDE), (0.25, SIDE)),
+            ),
+        ];
+        for (place, (z, z_growth, numbers, side, (both, from_side, from_cap))) in
+            cases.into_iter().enumerate()
+        {
+            let line = line(z, z_growth, numbers, side);
+            let of = |c: Crossing| (c.at.high, c.part);
+            for closed in [true, false] {
+                let kept = |c: (f64, u32)| if closed || c.1 == SIDE { Some(c) } else { None };
+                let expected = both.map_or([None; 2], |both| both.map(kept));
+                assert_eq!(line.span(closed).map(|c| c.map(of)), expected, "{place}");
+                assert_eq!(line.exit(closed, SIDE).map(of), kept(from_side), "{place}");
+                assert_eq!(line.exit(closed, TOP).map(of), kept(from_cap), "{place}");
+            }
+            let roots = line.span(true).map(|c| c.map_or(9, |c| c.root + 3 * c.part));
+            assert!(both.is_none() || roots[0] % 3 == 0, "{place}");
+            assert!(both.is_none() || (roots[1] == 1) == (roots[1] < 3), "{place}");
+        }
+    }
+}

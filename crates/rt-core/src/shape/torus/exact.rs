@@ -185,6 +185,7 @@ mod tests {
     use crate::Ray;
     use crate::kernel::{Task, run};
     use crate::testing::Random;
+    use glam::DVec3;
 
     /// Newton's step from beside a crossing: what it is said to leave and what it leaves, and the share of the step in
     /// the distance to an inflection.
@@ -223,5 +224,61 @@ mod tests {
             }
         }
         assert!(count > 1000, "{count}");
+    }
+
+    struct Moved<'a>(&'a Line, Double, [f64; 2]);
+
+    impl Task for Moved<'_> {
+        type Output = f64;
+        fn run<P: Product>(self) -> f64 {
+            let Moved(line, x, [k, z]) = self;
+            let mut moved = *line;
+            (moved.k, moved.z) = (line.k + k, line.z + z);
+            (moved.value::<P>(x).0 - line.value::<P>(x).0).to_f64()
+        }
+    }
+
+    struct Lines<'a>(&'a Torus, &'a crate::scaled::ScaledRay);
+
+    impl Task for Lines<'_> {
+        type Output = Line;
+        fn run<P: Product>(self) -> Line {
+            Line::of::<P>(self.0, self.1)
+        }
+    }
+
+    /// What is uncertain of `f` is what changes of `k` and `z` by a rounding of their scales change, whatever their signs, and a
+    /// rounding of the terms: no less, and no more.
+    #[test]
+    fn what_is_uncertain() {
+        let mut random = Random::new(2);
+        let mut count = 0;
+        let share = exp2i(-40);
+        for case in 0..4000 {
+            let minor = if case % 2 == 0 { random.uniform(0.3, 2.0) } else { random.magnitude(-4.0, 0.0) };
+            let torus = Torus::new(DVec3::ZERO, random.direction(), 1.0, minor).unwrap();
+            let along = random.direction();
+            let target = random.in_cube() * torus.reach;
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let line = run(Lines(&torus, &ray));
+            let x = random.uniform(-1.0, 1.0) * torus.reach;
+            let square = 4.0 * torus.major_scaled * torus.major_scaled;
+            let k = line.k.high + x * x;
+            if line.core.is_some() && k < -0.2 * square {
+                continue;
+            }
+            count += 1;
+            let reach = torus.reach;
+            let [worst_k, worst_z] = [[share * reach * reach, 0.0], [0.0, share * reach]].map(|by| {
+                let there = |side: f64| run(Moved(&line, Double::from(x), by.map(|by| side * by))).abs();
+                there(1.0).max(there(-1.0)) / share
+            });
+            let z = line.z.high + x * line.slope.high;
+            let terms = k * k + square * (torus.minor_scaled * torus.minor_scaled - z * z).abs();
+            let found = uncertainty(&torus, &line, x) / ROUNDING;
+            let expected = worst_k + worst_z + terms;
+            assert!((found / expected - 1.0).abs() < 1e-6, "{torus:?} {ray:?} {x}: {found} {expected}");
+        }
+        assert!(count > 2000, "{count}");
     }
 }

@@ -373,6 +373,8 @@ fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
     }
     // Halving alone comes to an end after 53 steps and a few, Newton's method after four or five.
     for _ in 0..60 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let Value { value, slope, error } = line.value(torus, x);
         if (value < 0.0) == low.inside {
             a = x;
@@ -411,6 +413,8 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     // Newton's method may first run far beyond and come back by a quarter of the way a step, as for y^4: 120 such steps are
     // 2^-49 of the way. A step of 2^-30 y leaves the square of that.
     for _ in 0..120 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let cubic = 4.0 * node.x + y;
         let value = node.value + y * y * (node.bend + y * cubic);
         let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
@@ -487,6 +491,46 @@ mod tests {
         assert!(count > 1000, "{count}");
     }
 
+    /// The error of a value is what it changes by with the errors of `k` and `z` that are derived above, whatever their signs,
+    /// its own roundings, and what the rounded place of an extremum matters: no less, and no more.
+    #[test]
+    fn what_values_err() {
+        let mut random = Random::new(4);
+        let mut count = 0;
+        for case in 0..4000 {
+            let minor = if case % 2 == 0 { random.uniform(0.3, 2.0) } else { random.magnitude(-4.0, 0.0) };
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, minor).unwrap();
+            let s = torus.reach;
+            let along = random.direction();
+            let target = torus.center + random.in_cube() * s;
+            let ray = torus.scaled(&Ray::new(target - along * 3.0, along)).unwrap();
+            let x = random.uniform(-1.0, 1.0) * s;
+            let Some((rough, ..)) = run(Both(&torus, &ray, x)) else { continue };
+            count += 1;
+            let value = |k: f64, z: f64| {
+                let (k, z) = (rough.k + x * x + k, rough.z + x * rough.slope + z);
+                k * k
+                    - 4.0
+                        * (torus.major_scaled * torus.major_scaled)
+                        * (minor * exp2i(-torus.scale) - z)
+                        * (minor * exp2i(-torus.scale) + z)
+            };
+            // Millions of times as large, which `f64` shows.
+            let share = exp2i(22);
+            let (of_k, of_z) = (24.0 * U * s * s * share, 16.0 * U * s * share);
+            let worst = |k: f64, z: f64| {
+                (value(k, z) - value(0.0, 0.0)).abs().max((value(-k, -z) - value(0.0, 0.0)).abs()) / share
+            };
+            let (k, z) = (rough.k + x * x, rough.z + x * rough.slope);
+            let gap = torus.minor_scaled * torus.minor_scaled - z * z;
+            let terms = k * k + 4.0 * torus.major_scaled * torus.major_scaled * gap.abs();
+            let expected = worst(of_k, 0.0) + worst(0.0, of_z) + 4.0 * U * terms + 0.0625 * U * s * s * s * s;
+            let found = rough.value(&torus, x).error;
+            assert!((found / expected - 1.0).abs() < 1e-4, "{torus:?} {ray:?} {x}: {found:e} {expected:e}");
+        }
+        assert!(count > 1000, "{count}");
+    }
+
     struct Sharp<'a>(&'a Torus, &'a ScaledRay, f64);
 
     impl Task for Sharp<'_> {
@@ -559,9 +603,40 @@ mod tests {
             assert!(!passes || crossings == 0, "{torus:?} {ray:?}");
             match case % 4 {
                 0 => count[usize::from(passes)] += 1,
+                // Along the axis, as near to the edge of the hole as can be told.
+                1 if rho < 0.75 - 1e-12 => assert!(passes, "{torus:?} {rho}"),
                 _ => count[2] += u32::from(passes),
             }
         }
-        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 500, "{count:?}");
+        assert!(count[0] == 0 && count[1] == 1000 && count[2] > 250, "{count:?}");
+        // Slanted lines past the rim, outside it all the way through the slab and yet near to the centre.
+        let mut beside = 0;
+        for case in 0..4000 {
+            let torus = Torus::new(random.in_cube(), random.direction(), 1.0, 0.25).unwrap();
+            let [x, y, z] = torus.frame.map(|axis| axis.high());
+            let turn = random.uniform(0.0, core::f64::consts::TAU);
+            let (out, sideways) =
+                (x * libm::cos(turn) + y * libm::sin(turn), y * libm::cos(turn) - x * libm::sin(turn));
+            let (inward, aside) = (random.uniform(0.0, 2.0), random.uniform(-1.0, 1.0));
+            // Through the upper side of the slab and nearest to the axis there or, on the way up again, at the lower one; just
+            // outside the rim or far from it.
+            let end = if case % 2 == 0 { 0.25 } else { -0.25 };
+            let gap = random.magnitude(-15.0, -0.5);
+            let along =
+                (z - out * inward * if end > 0.0 { 1.0 } else { -1.0 } + sideways * aside).normalize();
+            let place = torus.center + out * (1.25 + gap) + z * end;
+            let scaled = torus.scaled(&Ray::new(place - along * 3.0, along)).unwrap();
+            let other = place - along * (2.0 * end / along.dot(z));
+            let rho = |p: DVec3| (p - torus.center - z * (p - torus.center).dot(z)).length();
+            // Nearest to the axis inside the slab it may be anywhere.
+            let inside = (place - torus.center).dot(along - z * along.dot(z)) * end > 0.0;
+            let Some((passes, crossings)) = run(Passes(&torus, &scaled)) else { continue };
+            assert!(!passes || crossings == 0);
+            if gap > 1e-13 && rho(other) > rho(place) && !inside {
+                beside += 1;
+                assert!(passes, "{torus:?} {gap} {case}");
+            }
+        }
+        assert!(beside > 500, "{beside}");
     }
 }

@@ -63,7 +63,7 @@ pub(super) fn never_returns(torus: &Torus, ray: &ScaledRay, from: &Departure) ->
     }
     // h' = 3 y^2 + 8 a y + 4 (b + a^2) vanishes last at 2 / 3 (sqrt(4 a^2 - 3 (b + a^2)) - 2 a).
     let discriminant = 4.0 * along * along - 3.0 * first;
-    let y = (2.0 / 3.0) * (sqrt(if discriminant > 0.0 { discriminant } else { 0.0 }) - 2.0 * along);
+    let y = (2.0 / 3.0) * (sqrt(discriminant.max(0.0)) - 2.0 * along);
     let constant = 8.0 * major * rho * torus.minor_scaled * away;
     let least = ((y + 4.0 * along) * y + 4.0 * first) * y + constant;
     constant > MARGIN && (y < 0.0 || least > MARGIN)
@@ -260,6 +260,8 @@ fn refine<P: Product>(cubic: &Cubic, low: &Node, high: &Node) -> Double {
     let mut y = 0.5 * (a + b);
     // Roughly first. Halving alone takes 53 steps and a few.
     for _ in 0..64 {
+        #[cfg(test)]
+        crate::kernel::counted::step();
         let (value, slope) = cubic.rough(y);
         if (value < 0.0) == low.inside {
             a = y;

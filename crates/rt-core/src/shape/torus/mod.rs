@@ -93,7 +93,7 @@ impl Torus {
         let center = checked_point("center", center)?;
         let major = checked_length("major", major)?;
         let minor = checked_length("minor", minor)?;
-        let scale = exponent(if major > minor { major } else { minor });
+        let scale = exponent(major.max(minor));
         let (major_scaled, minor_scaled) = (major * exp2i(-scale), minor * exp2i(-scale));
         let (inner, reach) = (major_scaled - minor_scaled, major_scaled + minor_scaled);
         let outer = (major + minor).next_up();

@@ -152,16 +152,13 @@ impl Task for Near<'_> {
         // gamma the greatest of |f^(j) / (j! f')|^(1 / (j - 1)) at x, Newton's method finds a zero within twice its first
         // step if that is less than 0.15 / gamma, and two zeros within 0.05 / gamma of x would be nearer to each other
         // than the 0.16 / gamma that zeros there keep apart. The hit is within HIT_ERROR and the rounding of t of its
-        // crossing, so that is the zero found. Each power of gamma times the reach is compared with that of 0.05.
+        // crossing, so that is the zero found. Each power of gamma times the reach is compared with that of 0.05; the third
+        // derivative over 3! is 4 |x|, at most 32, and where that passes, so does the fourth over 4!, which is 1.
         let around = x.high.abs() * 4.0 * f64::EPSILON + (t.high * line.length.high).abs() * f64::EPSILON;
         let reach = 2.0 * (value.high / (4.0 * slope.high)).abs() + HIT_ERROR + around;
         let derivative = 4.0 * slope.high.abs();
         let second = (4.0 * line.bend(x.high)).abs() * reach;
-        let third = (4.0 * x.high).abs() * reach * reach;
-        if !(second < 0.05 * derivative
-            && third < 0.0025 * derivative
-            && reach * reach * reach < 0.000_125 * derivative)
-        {
+        if !(second < 0.05 * derivative && 32.0 * reach * reach < 0.0025 * derivative) {
             return None;
         }
         let mut step = value.div::<P>(slope).scale_exact(0.25);
@@ -302,8 +299,7 @@ impl Torus {
 #[inline(always)]
 fn place_error(uncertainty: f64, slope: f64) -> f64 {
     let along = uncertainty / (4.0 * slope.abs());
-    let most = sqrt(uncertainty);
-    if along < most { along } else { most }
+    along.min(sqrt(uncertainty))
 }
 
 #[cfg(test)]
@@ -383,6 +379,164 @@ mod tests {
         ] {
             let found = chosen(&crossings, place, too_far, root).map(|x| x.high);
             assert_eq!(found, expected, "{place} {too_far} {root}");
+        }
+    }
+
+    struct Crossed<'a>(&'a Torus, &'a ScaledRay);
+
+    impl Task for Crossed<'_> {
+        type Output = (Line, Crossings);
+        fn run<P: Product>(self) -> Self::Output {
+            let line = Line::of::<P>(self.0, self.1);
+            (line, exact::crossings::<P>(self.0, &line))
+        }
+    }
+
+    struct At<'a>(&'a Line, f64);
+
+    impl Task for At<'_> {
+        type Output = (f64, f64);
+        fn run<P: Product>(self) -> Self::Output {
+            let (value, slope) = self.0.value::<P>(Double::from(self.1));
+            (value.to_f64(), slope.to_f64())
+        }
+    }
+
+    struct Parameter<'a>(&'a Line, Double);
+
+    impl Task for Parameter<'_> {
+        type Output = Double;
+        fn run<P: Product>(self) -> Double {
+            self.0.parameter_at::<P>(self.1)
+        }
+    }
+
+    /// A torus, a line through it and its crossings, of which two next to each other are this far apart, about.
+    fn crossed(
+        random: &mut crate::testing::Random,
+        apart: f64,
+        distance: f64,
+    ) -> (Torus, ScaledRay, Line, Crossings) {
+        let minor = random.uniform(0.2, 0.8);
+        let torus = Torus::new(DVec3::ZERO, random.direction(), 1.0, minor).unwrap();
+        let [x, y, z] = torus.frame.map(|axis| axis.high());
+        let (u, v) = (random.uniform(0.0, 6.0), random.uniform(-1.2, 1.2));
+        let out = x * libm::cos(u) + y * libm::sin(u);
+        let normal = out * libm::cos(v) + z * libm::sin(v);
+        // The tube is round across, and bent outward there lengthwise: a depth of h makes a chord of 2 sqrt(2 h r).
+        let along = (out * libm::sin(v) - z * libm::cos(v)) + out.cross(z) * random.uniform(-0.3, 0.3);
+        let along = along.normalize();
+        let start = torus.scaled(&crate::Ray::new(out + normal * minor - along * distance, along)).unwrap();
+        // The square of the chord grows with the depth evenly, nearly: by the method of secants, in double-double.
+        let at = |depth: f64| {
+            let mut ray = start;
+            ray.relative.x = ray.relative.x - normal.x * depth;
+            ray.relative.y = ray.relative.y - normal.y * depth;
+            ray.relative.z = ray.relative.z - normal.z * depth;
+            let (line, crossings) = crate::kernel::run(Crossed(&torus, &ray));
+            let chord = match crossings.as_slice() {
+                [first, second, ..] => (*second - *first).high,
+                _ => 0.0,
+            };
+            (ray, line, crossings, chord * chord)
+        };
+        let (mut near, mut far, mut chord) = (1e-3, 2e-3, 0.1);
+        while near != far {
+            // By a tenth at most, so that no guess passes outside.
+            chord = f64::max(apart, 0.1 * chord);
+            let (a, b) = (at(near).3, at(far).3);
+            let next = near + (chord * chord - a) * (far - near) / (b - a);
+            let done = (a - apart * apart).abs() < 1e-3 * apart * apart;
+            (near, far) = if done || !next.is_finite() { (near, near) } else { (next, near) };
+        }
+        let (ray, line, crossings, _) = at(near);
+        (torus, ray, line, crossings)
+    }
+
+    /// A place errs by how far the crossing moves when `f` changes by its uncertainty, and where two crossings meet by no more
+    /// than the root of that.
+    #[test]
+    fn a_place_errs_by_the_way_of_a_crossing() {
+        let mut random = crate::testing::Random::new(1);
+        let mut count = 0;
+        for _ in 0..2000 {
+            let apart = random.magnitude(-1.0, -0.3);
+            let (_, _, line, crossings) = crossed(&mut random, apart, 3.0);
+            for x in crossings.as_slice() {
+                let slope = line.slope_at(x.high);
+                let uncertainty = random.magnitude(-12.0, -9.0);
+                let along = place_error(uncertainty, slope);
+                for side in [-1.0, 1.0] {
+                    let there = crate::kernel::run(At(&line, x.high + side * along)).0.abs();
+                    // The curvature's share of it is small.
+                    if (2.0 * line.bend(x.high) * along / slope).abs() < 1e-3 {
+                        count += 1;
+                        assert!((there / uncertainty - 1.0).abs() < 0.01, "{there:e} {uncertainty:e}");
+                    }
+                }
+                for (slope, share) in [(0.0, 1.0), (1e-30, 1.0), (0.25, 1e-6), (-0.5, 0.5e-6)] {
+                    let most = place_error(1e-12, slope);
+                    assert!((most / (1e-6 * share) - 1.0).abs() < 1e-9, "{most:e} {slope}");
+                }
+            }
+        }
+        assert!(count > 2000, "{count}");
+    }
+
+    /// A hit as far off as it may be is refined alone where its crossing is the only one for twenty such errors, and not where
+    /// another is nearer; then the record is that of all crossings separated anew.
+    #[test]
+    fn hits_are_refined_alone_where_it_is_safe() {
+        let mut random = crate::testing::Random::new(2);
+        let mut count = [0; 3];
+        for case in 0..8000 {
+            let distance = if case % 2 == 0 { 3.0 } else { random.magnitude(1.0, 6.0) };
+            // What the hit may err: its promise, and the rounding of its parameter.
+            let error = HIT_ERROR + f64::EPSILON * distance;
+            let apart = error * random.magnitude(0.5, 3.5);
+            let (torus, ray, line, crossings) = crossed(&mut random, apart, distance);
+            let &[first, second] = crossings.as_slice() else { continue };
+            let apart = (second - first).high;
+            let index = case / 2 % 2;
+            let x = [first, second][index] + HIT_ERROR * random.uniform(-1.0, 1.0);
+            let t = times_power(crate::kernel::run(Parameter(&line, x)).high, ray.power);
+            let hit = crate::Interval::LINE.admit(t, 0, index as u32).unwrap();
+            let near = crate::kernel::run(Near { torus: &torus, ray: &ray, hit });
+            let thorough = crate::kernel::run(Thorough(Near { torus: &torus, ray: &ray, hit }));
+            if let Some(near) = near {
+                assert_eq!(near.t, thorough.t, "{torus:?} {hit:?}");
+                assert!((near.point - thorough.point).length() < 1e-15, "{torus:?} {hit:?}");
+                count[0] += 1;
+                assert!(apart > 18.0 * error, "{} {distance}", apart / error);
+            } else {
+                count[1] += 1;
+                assert!(apart < 140.0 * error, "{} {distance}", apart / error);
+            }
+            count[2] += u32::from(apart > 100.0 * error);
+        }
+        assert!(count.iter().all(|&count| count > 1000), "{count:?}");
+    }
+
+    /// A hit without a crossing near it, as one may be that a moved ray passes: the record is that of its own place.
+    #[test]
+    fn a_hit_without_a_crossing() {
+        let torus = Torus::new(DVec3::ZERO, DVec3::Z, 2.0, 0.5).unwrap();
+        // Just over the tube, and through it on the other side.
+        let along = DVec3::new(1.0, 0.0, -0.05).normalize();
+        let top = DVec3::new(-2.0, 0.0, 0.0) + DVec3::new(0.05, 0.0, 1.0).normalize() * (0.5 + 1e-9);
+        let ray = crate::Ray::new(top - along, along);
+        let scaled = torus.scaled(&ray).unwrap();
+        let (_, crossings) = crate::kernel::run(Crossed(&torus, &scaled));
+        assert_eq!(crossings.as_slice().len(), 2);
+        for root in 0..2 {
+            let hit = crate::Interval::LINE.admit(1.0, 0, root).unwrap();
+            let surface = crate::kernel::run(Thorough(Near { torus: &torus, ray: &scaled, hit }));
+            assert!((surface.point - top).length() < 1e-14, "{surface:?}");
+            assert!((surface.normal.length() - 1.0).abs() < 1e-15);
+            // Where there is one, it is meant, however far off the hit is by a moved start.
+            let hit = crate::Interval::LINE.admit(4.0, 0, root).unwrap();
+            let far = crate::kernel::run(Thorough(Near { torus: &torus, ray: &scaled, hit }));
+            assert!((far.t - 4.0).abs() < 1e-12, "{far:?}");
         }
     }
 }
