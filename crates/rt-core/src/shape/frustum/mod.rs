@@ -195,11 +195,12 @@ impl Frustum {
     #[inline(never)]
     fn exact(&self, ray: &Ray, within: Interval) -> [Option<Hit>; 2] {
         let Some((scaled, line)) = self.line(ray) else { return [None; 2] };
-        // Where radius and height differ by more than double-double has digits, both crossings are roundings of the one with
-        // the plane of the caps, and the order that they happen to have says nothing of how far out that is. No point of the
-        // solid is farther from the axis than the larger radius; a place errs by 2^-49 of that in `f64`, and by 2^-103 of the
-        // distance that the ray comes from.
-        let farthest = self.numbers.reach * exp2i(-self.unit) * (1.0 + exp2i(-30));
+        // Where the radius is larger than the height by more than double-double has digits, both crossings are roundings of the
+        // one with the plane of the caps, and the order that they happen to have says nothing of how far out that is. No
+        // point of the solid is farther from the axis than the larger radius; a place errs by 2^-49 of that in `f64`. Where
+        // the height is the larger one, a place errs by that of the height, which says nothing, and the order is known.
+        let radius = self.numbers.reach * exp2i(-self.unit) * (1.0 + exp2i(-30));
+        let farthest = if self.numbers.reach > self.numbers.height { radius } else { f64::INFINITY };
         let axis = self.axis.high();
         line.span(self.closed).map(|found| {
             let found = found?;

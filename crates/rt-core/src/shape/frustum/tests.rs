@@ -171,3 +171,27 @@ fn what_is_clear_is_decided_quickly() {
     let most = [0, 0, 3, 270, 0, 0, 0, 95, 15, 1110, 0, 0];
     assert!(left.iter().zip(most).all(|([left, _], most)| *left <= most), "{left:?}");
 }
+
+/// However thin, a closed one is left where it is entered: aimed at the axis, from anywhere.
+#[test]
+fn needles_are_crossed_twice() {
+    let mut random = Random::new(4);
+    for case in 0..4000 {
+        let axis = random.direction();
+        let height = random.magnitude(-3.0, 3.0);
+        let thin = height * random.magnitude(-13.0, -3.0);
+        let radii = [[thin; 2], [thin, 0.0], [0.0, thin]][case % 3];
+        let base = random.in_cube() * height;
+        let f = Frustum::new(base, radii, base + axis * height, ["a", "b"], true).unwrap();
+        let target = base + axis * (height * random.uniform(0.3, 0.7));
+        let along = axis.cross(random.direction()).normalize() + axis * random.uniform(-1.0, 1.0);
+        let ray = Ray::new(target - along * (height * random.uniform(0.5, 4.0)), along);
+        let (_, line) = f.line(&ray).unwrap();
+        let crosses = line.span(true).iter().all(Option::is_some);
+        let found = f.exact(&ray, Interval::LINE).map(|hit| hit.is_some());
+        assert_eq!(found, [crosses; 2], "{f:?} {ray:?}");
+        let quickly = if radii[0] == radii[1] { f.rough::<false>(&ray) } else { f.rough::<true>(&ray) };
+        let found = f.both(quickly, &ray, Interval::LINE).map(|hit| hit.is_some());
+        assert_eq!(found, [crosses; 2], "{f:?} {ray:?}");
+    }
+}
