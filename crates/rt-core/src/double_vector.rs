@@ -3,7 +3,7 @@
 use crate::double::{Double, two_difference, two_sum};
 use crate::kernel::Product;
 use crate::math::sqrt;
-use core::ops::{Add, Neg, Sub};
+use core::ops::{Add, Sub};
 use glam::DVec3;
 
 /// Three double-double coordinates: about 106 bits each.
@@ -201,13 +201,5 @@ impl Sub for DoubleVector {
     #[inline(always)]
     fn sub(self, b: DoubleVector) -> DoubleVector {
         DoubleVector { x: self.x - b.x, y: self.y - b.y, z: self.z - b.z }
-    }
-}
-
-impl Neg for DoubleVector {
-    type Output = DoubleVector;
-    #[inline(always)]
-    fn neg(self) -> DoubleVector {
-        DoubleVector { x: -self.x, y: -self.y, z: -self.z }
     }
 }

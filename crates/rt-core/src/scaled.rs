@@ -354,4 +354,42 @@ mod tests {
             assert_eq!(admit(within, Double { high, low }, 0, 0).is_some(), inside, "{high} {low}");
         }
     }
+
+    /// Half the chord may be lost in the error of its square, 2^-99: then a place errs by no more than the root of that.
+    #[test]
+    fn uncertain_places() {
+        for k in 0..120 {
+            let half = exp2i(-k);
+            let (found, least) = (uncertainty(half), exp2i(-99) / (2.0 * half));
+            let expected = least.min(exp2i(-49));
+            assert!((expected..=2.0 * expected).contains(&found), "{k}");
+        }
+        assert_eq!(uncertainty(0.0), exp2i(-49));
+        // A rounded point, and what it is known to: moved by one rounding of each coordinate it is within.
+        for point in [DVec3::new(3.0, -1e-9, 7.5), DVec3::ZERO, DVec3::splat(1e-320), DVec3::splat(-2.5e60)] {
+            for along in [0.0, 1e-20, 4.0] {
+                let found = error_radius(point, along);
+                let moved = point.map(|x| 0.5 * (x.next_up() - x)).length();
+                assert!(
+                    found >= moved + along
+                        && found <= 4.0 * moved + along * (1.0 + 1e-15) + f64::from_bits(9)
+                );
+            }
+        }
+    }
+
+    /// The exit of a ray from inside is in the interval, whatever rounding did to its place: after the start at least.
+    #[test]
+    fn exits_after_the_start() {
+        let within = Interval::new(0.0, 9.0);
+        for (t, expected) in
+            [(2.5, Some(2.5)), (0.0, Some(f64::from_bits(1))), (-3.0, Some(f64::from_bits(1))), (9.5, None)]
+        {
+            assert_eq!(
+                admit_exit(within, t, 1, 2).map(|hit| (hit.t(), hit.part(), hit.root())),
+                expected.map(|t| (t, 1, 2))
+            );
+        }
+        assert_eq!(admit_exit(within.after(1.0), 0.5, 0, 0).map(|hit| hit.t()), Some(1.0_f64.next_up()));
+    }
 }

@@ -173,4 +173,16 @@ mod tests {
         assert_eq!(s.direction(DVec3::X), DVec3::Y);
         assert_eq!(Similarity::IDENTITY.translation(), DVec3::ZERO);
     }
+
+    /// The length of the axis does not matter, up to the greatest and down to the least numbers.
+    #[test]
+    fn axes_of_any_length() {
+        let axis = DVec3::new(0.25, -1.5, 0.75);
+        let turn = Similarity::IDENTITY.rotated(axis, 33.0).unwrap();
+        for power in [-1020, -900, -600, -3, 1, 600, 1000, 1023] {
+            let unit = crate::math::exp2i(power / 2) * crate::math::exp2i(power - power / 2);
+            let other = Similarity::IDENTITY.rotated(axis * unit, 33.0).unwrap();
+            assert_eq!(other.rotation(), turn.rotation(), "{power}");
+        }
+    }
 }

@@ -449,4 +449,21 @@ mod tests {
         }
         assert!(count[0] == 0 && count[1] < 40, "{count:?}");
     }
+
+    /// The axes of a plane are unit vectors in it and across each other: the first is the projection of its world axis, the
+    /// second on the side of its own.
+    #[test]
+    fn axes_in_the_plane() {
+        let mut random = Random::new(5);
+        for _ in 0..1000 {
+            let n = random.direction();
+            let (first, second) = plane_axes(n);
+            let k = dominant(n);
+            let (i, j) = [(1, 2), (0, 2), (0, 1)][k];
+            let projected = (DVec3::AXES[i] - n * n[i]).normalize();
+            assert!((first - projected).length() < 1e-15, "{n} {first}");
+            assert!(second.dot(n).abs() < 1e-15 && second.dot(first).abs() < 1e-15, "{n} {second}");
+            assert!((second.length() - 1.0).abs() < 1e-15 && second[j] > 0.0, "{n} {second}");
+        }
+    }
 }

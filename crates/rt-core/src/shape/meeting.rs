@@ -462,4 +462,26 @@ mod tests {
         }
         assert!(count > 3900 && near > 300, "{count} {near}");
     }
+
+    /// The error radius holds two roundings of each coordinate of the point, and what the place may err along each axis.
+    #[test]
+    fn an_error_radius_holds_its_parts() {
+        let mut random = Random::new(4);
+        for case in 0..1000 {
+            let point =
+                random.in_cube() * random.magnitude(-9.0, 9.0) * if case % 5 == 0 { 0.0 } else { 1.0 };
+            let error = random.magnitude(-30.0, 3.0) * if case % 3 == 0 { 0.0 } else { 1.0 };
+            let power = random.below(40) as i32 - 20;
+            let at = Meeting { t: 0.0, local: [Double::ZERO; 3], power, error };
+            let found = at.error_radius(point);
+            let roundings = 2.0 * U * point.abs().element_sum();
+            let least = roundings + 3.0 * error * exp2i(power);
+            assert!(
+                found >= least && found <= least * (1.0 + 1e-14) + f64::from_bits(9),
+                "{point} {error} {power}"
+            );
+        }
+        let at = Meeting { t: 0.0, local: [Double::ZERO; 3], power: 0, error: 0.0 };
+        assert!(at.error_radius(DVec3::ZERO) > 0.0 && at.error_radius(DVec3::ZERO) < 1e-320);
+    }
 }

@@ -363,6 +363,9 @@ fn cubics_fall_into_factors() {
             let size = random.magnitude(-7.0, -1.0);
             (size * random.sign(), size * random.uniform(0.2, 1.0))
         };
+        // In any unit.
+        let unit = exp2i(random.below(60) as i32 - 30);
+        let (lonely, middle, gap) = (lonely * unit, middle * unit, gap * unit);
         let square = gap * gap * if case % 4 < 2 { 1.0 } else { -1.0 };
         let (linear, constant) = (-2.0 * middle, middle * middle - square);
         let (a, b, d) = (linear - lonely, constant - lonely * linear, -lonely * constant);
