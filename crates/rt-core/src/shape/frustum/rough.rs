@@ -149,7 +149,7 @@ impl Numbers {
                 height,
                 error,
             };
-            if z_growth * z_growth > 8.0 * square {
+            if z_growth * z_growth > 64.0 * square {
                 return self.along_cylinder(w, d, chord, sqrt(inside));
             }
             return Rough::Chord(chord);
@@ -194,11 +194,12 @@ impl Numbers {
 }
 
 impl Numbers {
-    /// [`chord`](Numbers::chord) for a cylinder and a line at less than 20 degrees from its axis: `root` is `sqrt(D)`.
+    /// [`chord`](Numbers::chord) for a cylinder and a line at less than 7 degrees from its axis, for which K > 8: `root` is
+    /// `sqrt(D)`.
     ///
-    /// B / A errs by the rounding of d', 3 u |d|, times `|w'| / |d'|^2`: in length along the ray by 3 u K^2 |w'|, which is of the order of u S
-    /// over the cosine, 1 / K, only where the ray is far inside. A step of Newton's method, whose slope is `-+2 sqrt(D)`,
-    /// gives the digits of the place itself.
+    /// B / A errs by the rounding of d', 3 u |d|, times `|w'| / |d'|^2`: in length along the ray by 3 u K^2 |w'|, which is 3 K
+    /// times u S over the cosine, 1 / K, where the ray begins far from the axis. A step of Newton's method, whose slope is
+    /// `-+2 sqrt(D)`, gives the digits of the place itself.
     #[inline(never)]
     fn along_cylinder(&self, w: DVec3, d: DVec3, chord: Chord, root: f64) -> Rough {
         let half = 0.5 / root;
