@@ -231,9 +231,10 @@ fn compare_cubes(fast: &Geometry, plain: &Geometry, rays: &[(Ray, Interval)]) ->
             let ray = Ray::new(first.origin, ray.direction);
             let found = plain.nearest(&ray, *within);
             prop_assert_eq!(fast.nearest_from(&cube, &ray, *within), found, "{:?} {:?}", ray, within);
-            let mut many = [None; 2];
-            fast.nearest_from_many(&cube, &[ray, *first], &[*within; 2], &mut many);
-            prop_assert_eq!(many[0], found);
+            let mut many = [None; 3];
+            fast.nearest_from_many(&cube, &[ray, *first, ray], &[*within; 2], &mut many);
+            // As many as there are intervals.
+            prop_assert_eq!(many, [found, plain.nearest(first, *within), None]);
             let Some(found) = found else { continue };
             let surface = plain.surface(&ray, found);
             for side in [Side::Outside, Side::Inside] {
