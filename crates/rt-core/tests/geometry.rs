@@ -350,8 +350,8 @@ fn interleaved_rays() {
     let unit =
         |i: u32| DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0;
     let mut builder = Geometry::builder();
-    for i in 0..20_000 {
-        builder.push(Sphere::new(unit(i), 0.004 + 0.008 * unit(i + 9).x).unwrap());
+    for i in 0..100_000 {
+        builder.push(Sphere::new(unit(i), 0.002 + 0.005 * unit(i + 9).x).unwrap());
     }
     let geometry = builder.build();
     let rays: Vec<Ray> = (0..400)
