@@ -203,3 +203,116 @@ impl Sub for DoubleVector {
         DoubleVector { x: self.x - b.x, y: self.y - b.y, z: self.z - b.z }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expansion::Expansion;
+    use crate::kernel::{Dekker, Task, run};
+    use crate::math::exp2i;
+    use crate::testing::Random;
+
+    /// Numbers of all 106 bits, of both signs and sizes from 1/1000 to 1000.
+    fn double(random: &mut Random) -> Double {
+        let high = random.sign() * random.magnitude(-3.0, 3.0);
+        Double::sum(high, high * exp2i(-54) * random.uniform(-1.0, 1.0))
+    }
+
+    fn vector(random: &mut Random) -> DoubleVector {
+        DoubleVector { x: double(random), y: double(random), z: double(random) }
+    }
+
+    fn coordinates(v: &DoubleVector) -> [Double; 3] {
+        [v.x, v.y, v.z]
+    }
+
+    /// How far a number is from the exact sum of products, and the sum of the sizes of these.
+    fn error(found: Double, products: &[(Double, Double)]) -> (f64, f64) {
+        let mut exact = Expansion::ZERO;
+        let mut size = 0.0;
+        for &(a, b) in products {
+            exact.add_double_product::<Dekker>(a, b);
+            size += (a.high * b.high).abs();
+        }
+        exact.add(-found.high);
+        exact.add(-found.low);
+        (exact.rounded().high.abs(), size)
+    }
+
+    struct Bounds(Random);
+
+    impl Task for &mut Bounds {
+        type Output = ();
+        fn run<P: Product>(self) {
+            let random = &mut self.0;
+            for case in 0..4000 {
+                let (mut a, b) = (vector(random), vector(random));
+                let (mut s, t) = (double(random), double(random));
+                if case % 2 == 1 {
+                    // The terms all but cancel.
+                    s = a.x.div::<P>(b.x);
+                    a.z = -(a.x.mul::<P>(b.x) + a.y.mul::<P>(b.y)).div::<P>(b.z);
+                    a.z.low += a.z.high * random.uniform(-1.0, 1.0) * exp2i(-53 - (case / 2) % 50);
+                    a.z = Double::sum(a.z.high, a.z.low);
+                }
+                let terms = [(a.x, b.x), (a.y, b.y), (a.z, b.z)];
+                let (off, size) = error(a.inner::<P>(&b), &terms);
+                assert!(off <= exp2i(-99) * size, "inner {a:?} {b:?}");
+                let (off, size) = error(a.dot::<P>(b), &terms);
+                assert!(off <= exp2i(-101) * size, "dot {a:?} {b:?}");
+
+                let less = coordinates(&a.less::<P>(&b, s));
+                let blend = a.blend::<P>(s, &b, t).to_array();
+                let (d, step) = (b.high(), exp2i(-30) * t.high);
+                let advanced = coordinates(&a.advanced::<P>(d, s));
+                let nudged = coordinates(&a.nudged(d, step));
+                let moved = a.plus_f64(d).to_array();
+                for (k, (a, b)) in coordinates(&a).into_iter().zip(coordinates(&b)).enumerate() {
+                    let (off, size) = error(less[k], &[(a, Double::ONE), (-b, s)]);
+                    assert!(off <= exp2i(-103) * size, "{a:?} less {b:?} {s:?}");
+                    let (off, size) = error(Double::from(blend[k]), &[(a, s), (b, t)]);
+                    assert!(off <= exp2i(-53) * blend[k].abs() + exp2i(-101) * size, "blend {a:?} {b:?}");
+                    let (d, one) = (Double::from(d.to_array()[k]), Double::ONE);
+                    let (off, size) = error(advanced[k], &[(a, one), (d, s)]);
+                    assert!(off <= exp2i(-103) * size, "{a:?} advanced {d:?} {s:?}");
+                    let (off, size) = error(nudged[k], &[(a, one), (d, Double::from(step))]);
+                    assert!(
+                        off <= exp2i(-105) * size + exp2i(-52) * (d.high * step).abs(),
+                        "{a:?} nudged {d:?} {step}"
+                    );
+                    let (off, size) = error(Double::from(moved[k]), &[(a, one), (d, one)]);
+                    assert!(off <= exp2i(-53) * moved[k].abs() + exp2i(-104) * size, "{a:?} plus {d:?}");
+                }
+
+                let length = a.length::<P>();
+                let squares = [(a.x, a.x), (a.y, a.y), (a.z, a.z)];
+                let [x, y, z] = squares;
+                let (off, _) = error(Double::ZERO, &[x, y, z, (-length, length)]);
+                assert!(off <= exp2i(-100) * length.high * length.high, "length of {a:?}");
+                let (off, size) = error(a.length_squared::<P>(), &squares);
+                assert!(off <= exp2i(-102) * size, "square of {a:?}");
+                // Near the surface of a ball, nearer with each case, and anywhere.
+                let r = if case % 3 == 0 { t } else { length };
+                let r = Double::sum(r.high, r.low + r.high * random.uniform(-1.0, 1.0) * exp2i(-(case % 64)));
+                let excess = a.excess_over::<P>(r);
+                let (off, size) = error(Double::from(excess), &[x, y, z, (-r, r)]);
+                assert!(off <= exp2i(-53) * excess.abs() + exp2i(-100) * size, "excess of {a:?} over {r:?}");
+                let excess = a.excess::<P>(r.high);
+                let (off, size) =
+                    error(Double::from(excess), &[x, y, z, (Double::from(-r.high), Double::from(r.high))]);
+                assert!(
+                    off <= exp2i(-52) * excess.abs() + exp2i(-101) * size,
+                    "excess of {a:?} over {}",
+                    r.high
+                );
+            }
+        }
+    }
+
+    /// What the operations promise, against exact sums.
+    #[test]
+    fn as_right_as_promised() {
+        run(&mut Bounds(Random::new(1)));
+        (&mut Bounds(Random::new(2))).run::<Dekker>();
+    }
+}

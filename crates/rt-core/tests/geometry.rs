@@ -231,9 +231,10 @@ fn compare_cubes(fast: &Geometry, plain: &Geometry, rays: &[(Ray, Interval)]) ->
             let ray = Ray::new(first.origin, ray.direction);
             let found = plain.nearest(&ray, *within);
             prop_assert_eq!(fast.nearest_from(&cube, &ray, *within), found, "{:?} {:?}", ray, within);
-            let mut many = [None; 2];
-            fast.nearest_from_many(&cube, &[ray, *first], &[*within; 2], &mut many);
-            prop_assert_eq!(many[0], found);
+            let mut many = [None; 3];
+            fast.nearest_from_many(&cube, &[ray, *first, ray], &[*within; 2], &mut many);
+            // As many as there are intervals.
+            prop_assert_eq!(many, [found, plain.nearest(first, *within), None]);
             let Some(found) = found else { continue };
             let surface = plain.surface(&ray, found);
             for side in [Side::Outside, Side::Inside] {
@@ -341,6 +342,38 @@ fn memory_in_use() {
     assert!((50_000..400_000).contains(&few), "{few}");
     assert!((8 * few..12 * few).contains(&many), "{few} {many}");
     assert!(Geometry::builder().build().memory() < 1000);
+}
+
+/// Rays without company in a scene larger than the cache, where they are interleaved: each finds what it finds alone.
+#[test]
+fn interleaved_rays() {
+    let unit =
+        |i: u32| DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0;
+    let mut builder = Geometry::builder();
+    for i in 0..100_000 {
+        builder.push(Sphere::new(unit(i), 0.002 + 0.005 * unit(i + 9).x).unwrap());
+    }
+    let geometry = builder.build();
+    let rays: Vec<Ray> = (0..400)
+        .map(|i| {
+            let (from, to) = (unit(7 * i + 3) * 3.0 - 1.0, unit(11 * i + 5));
+            Ray::new(from, to - from)
+        })
+        .collect();
+    let within: Vec<Interval> =
+        (0..rays.len()).map(|i| Interval::new(0.0, [f64::INFINITY, 0.5][i % 2])).collect();
+    let (mut found, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+    geometry.nearest_many(&rays, &within, &mut found);
+    geometry.occluded_many(&rays, &within, &mut occluded);
+    for (i, ray) in rays.iter().enumerate() {
+        let hits = geometry.shapes().iter().filter_map(|shape| shape.hit(ray, within[i]));
+        let nearest = hits.map(|hit| hit.t()).min_by(f64::total_cmp);
+        assert_eq!(found[i].map(|found| found.hit.t()), nearest, "{ray:?}");
+        assert_eq!(found[i], geometry.nearest(ray, within[i]), "{ray:?}");
+        assert_eq!(occluded[i], nearest.is_some(), "{ray:?}");
+    }
+    let hits = found.iter().flatten().count();
+    assert!(hits > 100 && hits < 350, "{hits}");
 }
 
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.

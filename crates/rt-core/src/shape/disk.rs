@@ -375,4 +375,40 @@ mod tests {
         }
         assert!(count[0] < 10 && count[1] > 1000 && count[2] > 1000, "{count:?}");
     }
+
+    /// The doubt at the rim is what its derivation says, enough for any close parameter, and decides no hit that the sharper
+    /// bound does not.
+    #[test]
+    fn how_near_to_the_rim_a_place_is_told() {
+        let mut random = crate::testing::Random::new(2);
+        let mut count = [0_u32; 3];
+        for _ in 0..8000 {
+            let radius = random.magnitude(-2.0, 2.0);
+            let disk = Disk::new(random.in_cube() * radius, random.direction(), radius).unwrap();
+            let out = disk.normal.cross(random.direction()).normalize();
+            let share = 1.0 + random.sign() * random.magnitude(-13.0, 0.0);
+            let target = disk.center() + out * (radius * share);
+            let origin = target + random.direction() * (radius * random.magnitude(-1.0, 2.0));
+            let ray = Ray::new(origin, (target - origin) * random.magnitude(-1.0, 1.0));
+            let rough = Rough::new(&disk.facing, &ray);
+            if !rough.is_close() {
+                continue;
+            }
+            let (depth, doubt) = (disk.rim.depth(&rough), disk.rim.doubt(&rough));
+            let far = (ray.origin - disk.center()).abs().element_sum();
+            let expected = exp2i(-37) * (far + 2.0 * radius) * 3.0 * radius;
+            assert!(doubt >= expected && doubt < 1.001 * expected, "{disk:?} {ray:?}: {doubt} {expected}");
+            if depth.abs() <= doubt {
+                count[0] += 1;
+                continue;
+            }
+            let at = meeting::meet(&disk, &ray).unwrap();
+            let inside = run(InDisk { at: &at, radius });
+            assert_eq!(depth > 0.0, inside, "{disk:?} {ray:?}");
+            assert_eq!(disk.hit(&ray, Interval::LINE).is_some(), inside, "{disk:?} {ray:?}");
+            assert!(!inside || disk.plainly(&ray, Interval::LINE).is_ok(), "{disk:?} {ray:?}");
+            count[1 + usize::from(inside)] += 1;
+        }
+        assert!(count.iter().all(|&count| count > 500), "{count:?}");
+    }
 }

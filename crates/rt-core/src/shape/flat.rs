@@ -34,10 +34,10 @@ impl PartialEq for Facing {
 impl Facing {
     /// The plane through `anchor` across `n`, whose components are below 2, each within u.
     pub(super) fn new(anchor: DVec3, n: DVec3) -> Facing {
-        // Products with components of this size may lose all digits to underflow.
-        let tiny = |x: f64| x != 0.0 && x.abs() < exp2i(-900);
-        let n = n * 0.0625;
+        // Products with components of this size may lose all digits to underflow, and so may their sixteenths.
+        let tiny = |x: f64| x != 0.0 && x.abs() < exp2i(-896);
         let zero = if tiny(n.x) || tiny(n.y) || tiny(n.z) { f64::NAN } else { 0.0 };
+        let n = n * 0.0625;
         Facing {
             anchor: Pairs([[anchor.x, anchor.y], [anchor.z, zero]]),
             normal: Pairs([[-n.x, -n.y], [-n.z, n.x], [n.y, n.z]]),
@@ -464,6 +464,44 @@ mod tests {
             assert!((first - projected).length() < 1e-15, "{n} {first}");
             assert!(second.dot(n).abs() < 1e-15 && second.dot(first).abs() < 1e-15, "{n} {second}");
             assert!((second.length() - 1.0).abs() < 1e-15 && second[j] > 0.0, "{n} {second}");
+        }
+    }
+
+    /// A ray is read from its pairs as it is from its vectors: moment about the anchor, largest coordinates and reach, to the
+    /// bit.
+    #[test]
+    fn what_is_read_of_a_ray() {
+        let mut random = Random::new(3);
+        for _ in 0..2000 {
+            let (anchor, n) = (random.in_cube(), random.direction());
+            let facing = Facing::new(anchor, n);
+            let origin = random.in_cube() * random.magnitude(-2.0, 2.0);
+            let ray = Ray::new(origin, random.in_cube() * random.magnitude(-2.0, 2.0));
+            let rough = Rough::new(&facing, &ray);
+            let (w, d) = (ray.origin - anchor, ray.direction);
+            assert_eq!(rough.moment(), w.cross(d), "{anchor} {ray:?}");
+            assert_eq!(rough.largest(), (largest(w), largest(d)), "{anchor} {ray:?}");
+            assert_eq!(rough.reach(), w.abs().element_sum(), "{anchor} {ray:?}");
+            assert!((16.0 * rough.slope() - n.dot(d)).abs() <= 4.0 * U * d.length(), "{n} {ray:?}");
+            let moved = facing.at(origin);
+            assert!(facing.anchor() == anchor && moved.anchor() == origin);
+            assert!(moved != facing && moved.at(anchor) == facing && facing != Facing::new(anchor, -n));
+        }
+    }
+
+    /// Normals with a component whose products may underflow are left to exact arithmetic, wherever the plane is moved.
+    #[test]
+    fn tiny_components_of_a_normal() {
+        for k in 0..3 {
+            for (size, sound) in [(exp2i(-890), true), (exp2i(-900), false), (f64::from_bits(1), false)] {
+                let mut n = DVec3::AXES[(k + 1) % 3];
+                let ray = Ray::new(n * -3.0, n);
+                n[k] = -size;
+                let facing = Facing::new(DVec3::ZERO, n);
+                for facing in [facing, facing.at(DVec3::ONE)] {
+                    assert_eq!(Rough::new(&facing, &ray).is_sound(), sound, "{n}");
+                }
+            }
         }
     }
 }

@@ -157,6 +157,7 @@ impl Primitive for Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::exp2i;
 
     #[test]
     fn a_floor_counts_in_world_axes_exactly() {
@@ -211,5 +212,17 @@ mod tests {
         assert!(matches!(Plane::new([0.0; 3], [0.0; 3]), Err(Error::ZeroLength { .. })));
         assert!(matches!(Plane::new([f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]), Err(Error::NotFinite { .. })));
         assert!(matches!(Plane::new([0.0; 3], [0.0, f64::INFINITY, 0.0]), Err(Error::NotFinite { .. })));
+    }
+
+    /// The smallest components of a normal count, of those too that a sixteenth of them would be nothing of.
+    #[test]
+    fn the_smallest_components_of_a_normal_count() {
+        for slope in [f64::from_bits(1), f64::from_bits(7), 1e-310, 1e-290, 1e-260] {
+            let plane = Plane::new([0.0; 3], [slope, 0.0, 1.0]).unwrap();
+            let height = exp2i(-600);
+            let ray = Ray::new([height / slope, 0.0, height], [0.0, 0.0, -1.0]);
+            let found = plane.hit(&ray, Interval::FORWARD).map(|hit| hit.t() / height);
+            assert!(found.is_some_and(|t| (t - 2.0).abs() < 1e-9), "{slope:e}: {found:?}");
+        }
     }
 }

@@ -397,4 +397,57 @@ mod tests {
         }
         assert!(count == 2000);
     }
+
+    struct BothWays<'a>(FindSurface<'a>);
+
+    impl Task for BothWays<'_> {
+        type Output = Option<[Refined; 2]>;
+        fn run<P: Product>(self) -> Self::Output {
+            Some([self.0.newton::<P>()?, self.0.run::<P>()])
+        }
+    }
+
+    /// Newton's steps find what the closed form finds: place and parameter within what both may err, the normal to a few
+    /// roundings, and the error they tell is far below a rounding.
+    #[test]
+    fn both_ways_agree() {
+        let mut random = crate::testing::Random::new(4);
+        let mut count = [[0_u32; 2]; 2];
+        for case in 0..6000 {
+            let radius = random.uniform(0.2, 2.0);
+            let other = match case % 3 {
+                0 => radius,
+                1 => 0.0,
+                _ => radius * random.uniform(0.0, 2.0),
+            };
+            let (base, axis) = (random.in_cube(), random.direction());
+            let top = base + axis * random.uniform(0.3, 3.0);
+            let frustum = Frustum::new(base, [radius, other], top, ["a", "b"], true).unwrap();
+            let target = base.lerp(top, random.uniform(0.0, 1.0)) + random.in_cube() * (0.5 * radius);
+            let direction = random.direction() * random.magnitude(-1.0, 1.0);
+            let ray = Ray::new(target - direction.normalize() * random.magnitude(-0.5, 2.0), direction);
+            let scaled = ScaledRay::new(&ray, frustum.base, frustum.unit).unwrap();
+            for hit in frustum.exact(&ray, Interval::LINE).into_iter().flatten() {
+                let cap = usize::from(hit.part() == BASE || hit.part() == TOP);
+                count[cap][0] += 1;
+                let Some([quick, closed]) =
+                    kernel::run(BothWays(FindSurface { frustum: &frustum, ray: &scaled, hit }))
+                else {
+                    continue;
+                };
+                count[cap][1] += 1;
+                let error = quick.error + closed.error;
+                assert!(quick.error <= exp2i(-70), "{}", quick.error);
+                let apart = (quick.local - closed.local).high().length();
+                assert!(apart <= error, "{frustum:?} {ray:?} {hit:?}: {apart:e} {error:e}");
+                let apart = (quick.t - closed.t).high.abs() * scaled.direction.length();
+                assert!(apart <= error, "{frustum:?} {ray:?} {hit:?}: {apart:e} {error:e}");
+                assert!((quick.normal - closed.normal).length() < 1e-15, "{frustum:?} {ray:?} {hit:?}");
+                assert!((quick.z - closed.z).abs() <= 1e-16 + error, "{frustum:?} {ray:?} {hit:?}");
+            }
+        }
+        let [[side, quick_side], [cap, quick_cap]] = count.map(|count| count.map(f64::from));
+        assert!(quick_side > 0.9 * side && quick_cap > 0.9 * cap, "{count:?}");
+        assert!(side > 3000.0 && cap > 3000.0, "{count:?}");
+    }
 }

@@ -446,6 +446,7 @@ mod tests {
     use crate::Ray;
     use crate::kernel::run;
     use crate::testing::Random;
+    use alloc::vec::Vec;
 
     /// What the rough line says of a place, and the precise one.
     struct Both<'a>(&'a Torus, &'a ScaledRay, f64);
@@ -638,5 +639,65 @@ mod tests {
             }
         }
         assert!(beside > 500, "{beside}");
+    }
+
+    /// The stretch holds every crossing inside the interval, and is what sphere, slab and interval have in common, but for
+    /// the error of a hit.
+    #[test]
+    fn stretches_hold_what_is_asked_for() {
+        struct Stretch<'a>(&'a Torus, &'a ScaledRay, Interval);
+        impl Task for Stretch<'_> {
+            type Output = Option<((f64, f64), RoughLine, [f64; 2], Vec<f64>)>;
+            fn run<P: Product>(self) -> Self::Output {
+                let Stretch(torus, ray, within) = self;
+                let rough = RoughLine::new::<P>(torus, ray)?;
+                let line = Line::of::<P>(torus, ray);
+                let per_unit = exp2i(-ray.power);
+                let stretch = rough.stretch(torus, torus.reach, within, per_unit, 0.0);
+                let ends =
+                    [within.min, within.max].map(|t| line.distance::<P>(Double::from(t * per_unit)).to_f64());
+                let crossings = exact::crossings::<P>(torus, &line);
+                Some((stretch, rough, ends, crossings.as_slice().iter().map(|x| x.to_f64()).collect()))
+            }
+        }
+        let mut random = Random::new(5);
+        let mut count = [0; 4];
+        for _ in 0..4000 {
+            let size = random.magnitude(-3.0, 3.0);
+            let minor = random.uniform(0.05, 0.6) * size;
+            let torus = Torus::new(random.in_cube(), random.direction(), size, minor).unwrap();
+            let target = torus.center + random.in_cube() * size;
+            let along = random.direction() * random.magnitude(-1.0, 1.0);
+            let ray = Ray::new(target - along.normalize() * (3.0 * size), along);
+            let scaled = torus.scaled(&ray).unwrap();
+            let speed = size / along.length();
+            let min = random.uniform(0.0, 4.0) * speed;
+            let within = Interval::new(min, min + random.uniform(0.0, 4.0) * speed);
+            let Some(((from, to), rough, [min, max], crossings)) = run(Stretch(&torus, &scaled, within))
+            else {
+                continue;
+            };
+            let s = torus.reach;
+            // The slab, from the line's height at its closest approach.
+            let heights = [-1.0, 1.0].map(|side| (side * torus.minor_scaled - rough.z) / rough.slope);
+            let (enter, leave) = (heights[0].min(heights[1]), heights[0].max(heights[1]));
+            let (first, last) = (min.max(enter).max(-s), max.min(leave).min(s));
+            // The slab is thicker by 32 u S, which a slanted line makes longer.
+            let room = 2.01 * HIT_ERROR * s + 64.0 * U * s / rough.slope.abs();
+            assert!(from <= first + 1e-3 * room && from >= first - room, "{torus:?} {ray:?} {within:?}");
+            assert!(to >= last - 1e-3 * room && to <= last + room, "{torus:?} {ray:?} {within:?}");
+            for x in crossings {
+                assert!(x < min || x > max || (x >= from && x <= to), "{torus:?} {ray:?} {within:?} {x}");
+            }
+            let which =
+                |x: f64, ends: [f64; 2]| ends.iter().position(|&end| (x - end).abs() <= room).unwrap_or(2);
+            count[which(from, [min, enter])] += 1;
+            if which(to, [max, leave]) == 0 {
+                count[2] += 1;
+            } else {
+                count[3] += 1;
+            }
+        }
+        assert!(count[0] > 300 && count[1] > 300 && count[2] > 300 && count[3] > 300, "{count:?}");
     }
 }
