@@ -318,7 +318,6 @@ mod tests {
         assert!(matches!(Disk::new([0.0; 3], [0.0; 3], 1.0), Err(Error::ZeroLength { .. })));
     }
 
-    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
     /// Places beyond the reach of squares are outside, as is what is no number.
     #[test]
     fn far_outside() {
@@ -340,6 +339,7 @@ mod tests {
         }
     }
 
+    /// What must not become slow unseen: `f64` tells all plain hits and misses, and the same as exact arithmetic.
     #[test]
     fn plainly_as_exactly() {
         let mut random = crate::testing::Random::new(1);
