@@ -112,6 +112,17 @@ impl Double {
         Double { high, low }
     }
 
+    /// The quotient, given the inverse of the large part of the divisor: one Newton step from the rounded quotient. The
+    /// remainder is at most 5 u of the dividend and rounds three times, the step twice: right to 2^-101.
+    #[inline(always)]
+    pub fn div_with<P: Product>(self, b: Double, inverse: f64) -> Self {
+        let q = self.high * inverse;
+        let (p, e) = P::two_product(q, b.high);
+        let rest = ((self.high - p) - e) + (self.low - q * b.low);
+        let (high, low) = fast_two_sum(q, rest * inverse);
+        Double { high, low }
+    }
+
     /// The square root; zero for zero and for negative values.
     #[inline(always)]
     pub fn sqrt<P: Product>(self) -> Self {

@@ -14,6 +14,13 @@ pub(crate) struct DoubleVector {
     pub z: Double,
 }
 
+/// The square as a product and what is left of it, but for the square of the low part.
+#[inline(always)]
+fn squared<P: Product>(a: Double) -> (f64, f64) {
+    let (p, e) = P::two_product(a.high, a.high);
+    (p, e + 2.0 * (a.high * a.low))
+}
+
 impl DoubleVector {
     /// The exact value of a vector.
     #[inline(always)]
@@ -114,12 +121,8 @@ impl DoubleVector {
     /// `|self|^2 - r^2`: within 2^-100 of `|self|^2 + r^2`.
     #[inline(always)]
     pub fn excess_over<P: Product>(&self, r: Double) -> f64 {
-        let square = |a: Double| {
-            let (p, e) = P::two_product(a.high, a.high);
-            (p, e + 2.0 * (a.high * a.low))
-        };
         let ((x, x_low), (y, y_low), (z, z_low), (r, r_low)) =
-            (square(self.x), square(self.y), square(self.z), square(r));
+            (squared::<P>(self.x), squared::<P>(self.y), squared::<P>(self.z), squared::<P>(r));
         let (s, s_low) = two_sum(x, y);
         let (u, u_low) = two_difference(z, r);
         let (v, v_low) = two_sum(s, u);
@@ -163,11 +166,8 @@ impl DoubleVector {
     /// The length: right to 2^-101 of itself.
     #[inline(always)]
     pub fn length<P: Product>(&self) -> Double {
-        let square = |a: Double| {
-            let (p, e) = P::two_product(a.high, a.high);
-            (p, e + 2.0 * (a.high * a.low))
-        };
-        let ((x, x_low), (y, y_low), (z, z_low)) = (square(self.x), square(self.y), square(self.z));
+        let ((x, x_low), (y, y_low), (z, z_low)) =
+            (squared::<P>(self.x), squared::<P>(self.y), squared::<P>(self.z));
         let (s, s_low) = two_sum(x, y);
         let (s, z_s) = two_sum(s, z);
         let low = (s_low + z_s) + ((x_low + y_low) + z_low);

@@ -174,10 +174,6 @@ impl Lanes for Avx2Lanes {
     }
     #[inline(always)]
     fn prefetch<T>(self, value: &T) {
-        let start = (value as *const T).cast::<i8>();
-        for line in 0..core::mem::size_of::<T>().div_ceil(64).min(4) {
-            // SAFETY: a prefetch never faults; the address lies within `value`.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) }
-        }
+        super::prefetch(value);
     }
 }

@@ -181,7 +181,7 @@ fn place<P: Product>(plane: &ExactPlane, offset: f64, w: &[Double; 3], d: DVec3)
         }
     };
     let inverse = 1.0 / denominator.high;
-    let t = quotient::<P>(numerator, denominator, inverse);
+    let t = numerator.div_with::<P>(denominator, inverse);
     let along = |w: Double, d: f64| {
         let (p, e) = P::two_product(t.high, d);
         let (s, f) = two_difference(p, w.high);
@@ -230,17 +230,6 @@ pub(super) fn dot<P: Product>(a: &[Double; 3], b: &[Double; 3], c: f64) -> (Doub
     let (s, g) = two_sum(s, c);
     let (high, low) = fast_two_sum(s, ((x_low + y_low) + z_low) + ((e + f) + g));
     (Double { high, low }, x.abs() + y.abs() + z.abs() + c.abs())
-}
-
-/// The quotient, given the inverse of the large part of the divisor: one Newton step from the rounded quotient. The
-/// remainder is at most 5 u of the dividend and rounds three times, the step twice: right to 2^-101.
-#[inline(always)]
-pub(super) fn quotient<P: Product>(a: Double, b: Double, inverse: f64) -> Double {
-    let q = a.high * inverse;
-    let (p, e) = P::two_product(q, b.high);
-    let rest = ((a.high - p) - e) + (a.low - q * b.low);
-    let (high, low) = fast_two_sum(q, rest * inverse);
-    Double { high, low }
 }
 
 struct Meet<'a, S> {

@@ -319,7 +319,7 @@ impl Triangle {
             let (x, y) = (p[0].mul::<P>(q[1]), p[1].mul::<P>(q[0]));
             let (s, e) = two_difference(x.high, y.high);
             let (high, low) = fast_two_sum(s, e + (x.low - y.low));
-            meeting::quotient::<P>(Double { high, low }, area, inverse).high.clamp(0.0, 1.0)
+            Double { high, low }.div_with::<P>(area, inverse).high.clamp(0.0, 1.0)
         };
         DVec2::new(weight(l, edge(c)), weight(edge(b), l))
     }

@@ -1,5 +1,6 @@
 //! Beams: what they hold, and by how much they are too wide.
 
+use super::super::query::Nearest;
 use super::*;
 use crate::kernel::PortableLanes;
 use crate::testing::Random;
@@ -86,18 +87,32 @@ fn what_makes_no_beam() {
     assert!(!bundled(&nowhere, 0.5));
 }
 
+/// Many small spheres.
+fn spheres(random: &mut Random) -> Geometry {
+    let mut builder = Geometry::builder();
+    for _ in 0..500 {
+        builder.push(crate::shape::Sphere::new(random.in_cube(), random.uniform(0.02, 0.1)).unwrap());
+    }
+    builder.build()
+}
+
+/// A packet that asks for the nearest hits of those of the rays that are active.
+fn forward<'a>(geometry: &Geometry, rays: &'a [crate::Ray], active: u32) -> Packet<'a, Nearest> {
+    let within = [crate::Interval::FORWARD; PACKET];
+    let mut side = Side::EMPTY;
+    assert!(geometry.frame.enter_together(PortableLanes, rays, &within, &mut side));
+    let queries = core::array::from_fn(|i| {
+        Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
+    });
+    Packet { rays, side, queries, active }
+}
+
 /// Rays that go side by side are answered together, and as one by one.
 #[test]
 fn rays_side_by_side_are_answered_together() {
-    use super::super::query::Nearest;
-    use crate::shape::Sphere;
     use crate::{Interval, Ray};
     let mut random = Random::new(3);
-    let mut builder = Geometry::builder();
-    for _ in 0..500 {
-        builder.push(Sphere::new(random.in_cube(), random.uniform(0.02, 0.1)).unwrap());
-    }
-    let geometry = builder.build();
+    let geometry = spheres(&mut random);
     for case in 0..200 {
         // Up to a few shapes' sizes apart: 0.06 is that of a shape here, in the units of the world.
         let spread = random.magnitude(-4.0, -1.3);
@@ -106,14 +121,8 @@ fn rays_side_by_side_are_answered_together() {
         let rays: Vec<Ray> = (0..count)
             .map(|_| Ray::new(origin + random.in_cube() * spread, random.in_cube() * spread - origin))
             .collect();
-        let within = [Interval::FORWARD; PACKET];
-        let mut side = Side::EMPTY;
-        assert!(geometry.frame.enter_together(PortableLanes, &rays, &within, &mut side));
-        let queries = core::array::from_fn(|i| {
-            Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
-        });
         let active = ((1_u64 << count) - 1) as u32;
-        let mut packet = Packet { rays: &rays, side, queries, active };
+        let mut packet = forward(&geometry, &rays, active);
         assert_eq!(packet.search(PortableLanes, &geometry), active, "{spread}");
         for (ray, query) in rays.iter().zip(&packet.queries) {
             if query.contested().is_none() {
@@ -126,15 +135,9 @@ fn rays_side_by_side_are_answered_together() {
 /// A packet of which either half goes side by side, but not with the other, is answered by halves.
 #[test]
 fn halves_are_answered_together() {
-    use super::super::query::Nearest;
-    use crate::shape::Sphere;
     use crate::{Interval, Ray};
     let mut random = Random::new(4);
-    let mut builder = Geometry::builder();
-    for _ in 0..500 {
-        builder.push(Sphere::new(random.in_cube(), random.uniform(0.02, 0.1)).unwrap());
-    }
-    let geometry = builder.build();
+    let geometry = spheres(&mut random);
     for case in 0..60 {
         let spread = random.magnitude(-4.0, -1.5);
         let towards = [random.in_cube(), -random.in_cube()];
@@ -150,14 +153,8 @@ fn halves_are_answered_together() {
                 )
             })
             .collect();
-        let within = [Interval::FORWARD; PACKET];
-        let mut side = Side::EMPTY;
-        assert!(geometry.frame.enter_together(PortableLanes, &rays, &within, &mut side));
-        let queries = core::array::from_fn(|i| {
-            Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
-        });
         let active = ((1_u64 << (16 + few)) - 1) as u32;
-        let mut packet = Packet { rays: &rays, side, queries, active };
+        let mut packet = forward(&geometry, &rays, active);
         let done = packet.search(PortableLanes, &geometry);
         assert_eq!(done, if few == 16 { active } else { 0xffff }, "{case}");
         for (i, (ray, query)) in rays.iter().zip(&packet.queries).enumerate() {

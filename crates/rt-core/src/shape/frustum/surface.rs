@@ -7,7 +7,6 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Product, Task};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledRay, error_radius, largest, times_power, uncertainty};
-use crate::shape::meeting;
 use crate::surface::Coordinates;
 use crate::{Hit, Ray, Surface};
 use glam::{DVec2, DVec3};
@@ -196,7 +195,7 @@ impl FindSurface<'_> {
             if size * curvature < exp2i(-36) * q && size < exp2i(-36) * q {
                 let away = away.nudged(across, change);
                 // What the step does to the radius is below 2^-17 of it: its square vanishes.
-                let mut part = meeting::quotient::<P>(f.radial, radius, inverse);
+                let mut part = f.radial.div_with::<P>(radius, inverse);
                 part.low -= part.high * (e1 * change * inverse);
                 let normal = away.blend::<P>(part, &f.axis, f.axial);
                 let z = (z + z_growth * change).high;

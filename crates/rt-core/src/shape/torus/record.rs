@@ -113,11 +113,25 @@ impl Direct<'_> {
                 let local = p.nudged(d, step);
                 // Three parts as above, each times |d| < 2^2.
                 let error = exp2i(-66) * minor;
-                return Some(torus.finish(ray.unscale(t).to_f64(), local, normal, out, z, false, error));
+                let place = Place { local, normal, out, z, inner: false, error };
+                return Some(torus.finish(ray.unscale(t).to_f64(), place));
             }
         }
         None
     }
+}
+
+/// A place on the torus, in its units.
+struct Place {
+    local: DoubleVector,
+    normal: DVec3,
+    /// The way to it from the generating circle: along the radius and along the axis.
+    out: f64,
+    z: f64,
+    /// Whether it is on the inner sheet of a spindle.
+    inner: bool,
+    /// How far the true crossing can be.
+    error: f64,
 }
 
 /// `out^2 + z^2 - r^2`.
@@ -260,22 +274,13 @@ impl Torus {
         let t = ray.unscale(parameter).to_f64();
         let uncertainty = exact::uncertainty(self, line, x.high);
         let error = place_error(uncertainty, line.slope_at(x.high));
-        self.finish(t, local, normal, out.high, z.high, inner, error)
+        self.finish(t, Place { local, normal, out: out.high, z: z.high, inner, error })
     }
 
-    /// The record of the point `local`, known to `error`; `out` and `z` lead to it from the generating circle.
+    /// The record of a place.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
-    fn finish(
-        &self,
-        t: f64,
-        local: DoubleVector,
-        normal: DVec3,
-        out: f64,
-        z: f64,
-        inner: bool,
-        error: f64,
-    ) -> Surface {
+    fn finish(&self, t: f64, place: Place) -> Surface {
+        let Place { local, normal, out, z, inner, error } = place;
         let flat = local.high();
         let (x_own, y_own) = (flat.dot(self.frame[0].high()), flat.dot(self.frame[1].high()));
         let (unit, own) = (exp2i(self.scale), DVec3::new(x_own, y_own, z));
@@ -294,8 +299,8 @@ impl Torus {
 }
 
 /// How far the place on the ray can be from the true crossing: the error of `f`, its [uncertainty](exact::uncertainty),
-/// over its derivative, four times `slope`; where that is small, near a
-/// double crossing, by the order of the uncertainty's root instead.
+/// over its derivative, four times `slope`; where that is small, near a double crossing, by the order of the
+/// uncertainty's root instead.
 #[inline(always)]
 fn place_error(uncertainty: f64, slope: f64) -> f64 {
     let along = uncertainty / (4.0 * slope.abs());
