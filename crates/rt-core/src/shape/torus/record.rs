@@ -272,7 +272,7 @@ impl Torus {
             self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
         let t = ray.unscale(parameter).to_f64();
-        let uncertainty = exact::uncertainty(self, line, x.high);
+        let uncertainty = exact::uncertainty::<P>(self, line, x);
         let error = place_error(uncertainty, line.slope_at(x.high));
         self.finish(t, Place { local, normal, out: out.high, z: z.high, inner, error })
     }
