@@ -586,3 +586,30 @@ fn at_the_pole_of_a_spindle() {
     }
     assert!(count > 10_000, "{count}");
 }
+
+/// However thin the tube, and from however far away it is met, a normal has unit length.
+#[test]
+fn normals_of_thin_tubes() {
+    let mut random = crate::testing::Random::new(5);
+    let mut count = 0;
+    for case in 0..20_000 {
+        let minor = random.magnitude(-24.0, -3.0);
+        let axis = if case % 2 == 0 { DVec3::X } else { random.direction() };
+        let torus = Torus::new(DVec3::ZERO, axis, 1.0, minor).unwrap();
+        let (mut out, _) = place(&torus, random.uniform(0.0, 1.0), random.uniform(0.0, 1.0));
+        let mut way = random.direction();
+        if case % 2 == 0 {
+            // In the plane of the ring, where every ray that passes the ring meets the thinnest tube.
+            (out.x, way.x) = (0.0, 0.0);
+        }
+        let origin = out - way * random.magnitude(-1.0, 8.0);
+        let ray = Ray::new(origin, out - origin);
+        for hit in all(&torus, &ray) {
+            let surface = torus.surface(&ray, hit);
+            let square = surface.normal.length_squared();
+            count += 1;
+            assert!((square - 1.0).abs() < 1e-15, "{torus:?} {ray:?} {square}");
+        }
+    }
+    assert!(count > 1000, "{count}");
+}
