@@ -314,6 +314,52 @@ proptest! {
     }
 }
 
+/// Shadow rays of points here and there to one lamp, put in an order of their own, are blocked as each by itself.
+#[cfg(feature = "testing")]
+#[test]
+fn rays_that_meet_in_a_lamp_are_blocked_as_one_by_one() {
+    let mut random = rt_core::testing::Random::new(7);
+    let mut plain = Geometry::builder().accelerated(false);
+    for number in 0..3000 {
+        let (at, size) = (random.in_cube() * 10.0, random.uniform(0.05, 0.4));
+        plain.push(match number % 3 {
+            0 => Shape::from(Torus::new(at, random.direction(), size, size * 0.3).unwrap()),
+            1 => Cuboid::new(at, at + DVec3::splat(size)).unwrap().into(),
+            _ => Sphere::new(at, size).unwrap().into(),
+        });
+    }
+    let fast = plain.clone().accelerated(true).build();
+    let plain = plain.build();
+    for lamp in [[3.0, 4.0, 1.0], [40.0, 60.0, -50.0], [1e4, -3e4, 2e4]].map(DVec3::from_array) {
+        let (mut rays, mut within, mut from) = (Vec::new(), Vec::new(), Vec::new());
+        for _ in 0..3000 {
+            let ray = Ray::new(random.in_cube() * 12.0, random.direction());
+            let Some(found) = fast.nearest(&ray, Interval::FORWARD) else { continue };
+            let departure = fast.surface(&ray, found).departure(found.object, found.hit, Side::Outside);
+            let start = departure.ray(DVec3::ZERO).0.origin;
+            rays.push(Ray::new(start, lamp - start));
+            within.push(Interval::new(0.0, 1.0));
+            from.push(departure);
+        }
+        // No ray at all.
+        rays[5].direction = DVec3::ZERO;
+        within[6] = Interval::new(1.0, 0.0);
+        for level in [Level::Portable, Level::Avx2] {
+            set_level(level);
+            let mut occluded = vec![false; rays.len()];
+            fast.occluded_leaving_many(&rays, &within, &from, &mut occluded);
+            let blocked = occluded.iter().filter(|&&blocked| blocked).count();
+            assert!((rays.len() / 10..rays.len() * 9 / 10).contains(&blocked), "{blocked} of {}", rays.len());
+            for (i, occluded) in occluded.iter().enumerate() {
+                assert_eq!(*occluded, fast.occluded_leaving(&rays[i], within[i], &from[i]), "{i}");
+                if i % 16 == 0 {
+                    assert_eq!(*occluded, plain.occluded_leaving(&rays[i], within[i], &from[i]), "{i}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn shapes_are_counted_as_they_are_added() {
     let mut builder = Geometry::builder();

@@ -4,6 +4,7 @@ use crate::guard::{self, Fault};
 use crate::whitted::Tracer;
 use crate::{Antialias, Error, Picture, Region, Scene, Settings, Stats, adaptive, sample};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Hears how far a rendering is, and can end it. `&()` hears nothing; an [`AtomicBool`] ends it when set.
 pub trait Progress: Sync {
@@ -56,11 +57,12 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     };
     let tiles = tiles(region, edge);
     let count = Count { done: AtomicU64::new(0), rays: AtomicU64::new(0), total: tiles.len() as u64 };
+    let workers = Workers(Mutex::new(Vec::new()));
     let work = |tile: &Region| -> Option<Result<Tile, Fault>> {
         if progress.cancelled() {
             return None;
         }
-        let done = finish(scene, settings, *tile);
+        let done = workers.finish(scene, settings, *tile);
         let rays = done.as_ref().map_or(0, |tile| tile.stats.rays());
         let rays = count.rays.fetch_add(rays, Ordering::Relaxed) + rays;
         let done_now = count.done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -113,21 +115,44 @@ fn tiles(region: Region, edge: u32) -> Vec<Region> {
     tiles
 }
 
-fn finish(scene: &Scene, settings: &Settings, tile: Region) -> Result<Tile, Fault> {
-    let mut tracer = Tracer::new(scene, settings);
-    let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
-    guard::take();
-    match settings.antialias {
-        Antialias::Adaptive { threshold, depth } => {
-            let (camera, mut buffers) = (&scene.camera, adaptive::Buffers::default());
-            let how = (threshold, depth);
-            adaptive::tile(&mut tracer, &mut buffers, camera, settings, how, tile, &mut pixels);
-        }
-        _ => sample::tile(&mut tracer, &scene.camera, settings, tile, &mut pixels),
+/// What a thread works with, kept from tile to tile: memory that was used before is faster than new one.
+struct Worker<'s> {
+    tracer: Tracer<'s>,
+    samples: sample::Buffers,
+    corners: adaptive::Buffers,
+}
+
+/// The workers that have nothing to do.
+struct Workers<'s>(Mutex<Vec<Worker<'s>>>);
+
+impl<'s> Workers<'s> {
+    fn idle(&self) -> MutexGuard<'_, Vec<Worker<'s>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    match guard::take() {
-        Some(fault) => Err(fault),
-        None => Ok(Tile { pixels, stats: tracer.stats }),
+
+    fn finish(&self, scene: &'s Scene, settings: &Settings, tile: Region) -> Result<Tile, Fault> {
+        let idle = self.idle().pop();
+        let mut worker = idle.unwrap_or_else(|| Worker {
+            tracer: Tracer::new(scene, settings),
+            samples: sample::Buffers::default(),
+            corners: adaptive::Buffers::default(),
+        });
+        let Worker { tracer, samples, corners } = &mut worker;
+        let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
+        guard::take();
+        match settings.antialias {
+            Antialias::Adaptive { threshold, depth } => {
+                let how = (threshold, depth);
+                adaptive::tile(tracer, corners, &scene.camera, settings, how, tile, &mut pixels);
+            }
+            _ => sample::tile(tracer, samples, &scene.camera, settings, tile, &mut pixels),
+        }
+        if let Some(fault) = guard::take() {
+            return Err(fault);
+        }
+        let stats = core::mem::take(&mut tracer.stats);
+        self.idle().push(worker);
+        Ok(Tile { pixels, stats })
     }
 }
 

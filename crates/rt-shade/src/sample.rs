@@ -2,7 +2,8 @@
 
 use crate::whitted::Tracer;
 use crate::{Antialias, Camera, Color, Region, Settings};
-use rt_core::Interval;
+use core::ops::Range;
+use rt_core::{Found, Interval, Ray};
 
 /// The edge of a square of pixels whose rays are neighbours in a batch.
 const BLOCK: usize = 4;
@@ -13,9 +14,35 @@ const BLOCK: usize = 4;
 /// [`Geometry::nearest_many`]: rt_core::Geometry::nearest_many
 const ROWS: usize = 32;
 
+/// What is known of the rays that are cast together.
+#[derive(Default)]
+pub(crate) struct Buffers {
+    rays: Vec<Ray>,
+    within: Vec<Interval>,
+    found: Vec<Option<Found>>,
+    colors: Vec<Color>,
+}
+
+/// Calls `each` with the places of some rows of pixels, in squares of [`BLOCK`]: neighbours in that order go side by side.
+#[inline(always)]
+fn in_squares(width: u32, rows: Range<u32>, mut each: impl FnMut(u32, u32)) {
+    for top in rows.clone().step_by(BLOCK) {
+        let bottom = (top + BLOCK as u32).min(rows.end);
+        for left in (0..width).step_by(BLOCK) {
+            let right = (left + BLOCK as u32).min(width);
+            for y in top..bottom {
+                for x in left..right {
+                    each(x, y);
+                }
+            }
+        }
+    }
+}
+
 /// The colours of the pixels of `tile`, row by row. The rays of a few rows are cast together.
 pub(crate) fn tile(
     tracer: &mut Tracer,
+    buffers: &mut Buffers,
     camera: &Camera,
     settings: &Settings,
     tile: Region,
@@ -33,20 +60,12 @@ pub(crate) fn tile(
     let first = if settings.corners { 0.0 } else { 0.5 * step };
     out.clear();
     out.resize(tile.width as usize * tile.height as usize, [0.0; 3]);
-    let (mut rays, mut found, mut colors) = (Vec::new(), Vec::new(), Vec::new());
+    let Buffers { rays, within, found, colors } = buffers;
     let rows = (ROWS / samples).max(1).next_multiple_of(BLOCK);
-    // Some rows at a time, in squares of pixels: neighbours in the list go side by side.
     for top in (0..tile.height).step_by(rows) {
-        let bottom = (top + rows as u32).min(tile.height);
-        let square = |(left, top): (u32, u32)| {
-            let columns = left..(left + BLOCK as u32).min(tile.width);
-            let rows = top..(top + BLOCK as u32).min(bottom);
-            rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
-        };
-        let corners = |top| (0..tile.width).step_by(BLOCK).map(move |left| (left, top));
-        let pixels = || (top..bottom).step_by(BLOCK).flat_map(corners).flat_map(square);
+        let rows = top..(top + rows as u32).min(tile.height);
         rays.clear();
-        for (x, y) in pixels() {
+        in_squares(tile.width, rows.clone(), |x, y| {
             for j in 0..n {
                 for i in 0..n {
                     let u = f64::from(tile.x + x) + (first + f64::from(i) * step);
@@ -54,16 +73,18 @@ pub(crate) fn tile(
                     rays.push(camera.ray(u, v, width, height));
                 }
             }
-        }
-        let within = vec![Interval::FORWARD; rays.len()];
+        });
+        within.resize(rays.len(), Interval::FORWARD);
         found.clear();
         found.resize(rays.len(), None);
-        tracer.nearest_many(&rays, &within, &mut found);
-        tracer.all_seen_by_eye(&rays, &found, &mut colors);
-        for ((x, y), colors) in pixels().zip(colors.chunks_exact(samples)) {
+        tracer.nearest_many(rays, within, found);
+        tracer.all_seen_by_eye(rays, found, colors);
+        let mut colors = colors.chunks_exact(samples);
+        in_squares(tile.width, rows, |x, y| {
+            let Some(colors) = colors.next() else { return };
             let sum = colors.iter().fold(Color::BLACK, |sum, &color| sum + color);
             out[y as usize * tile.width as usize + x as usize] = (sum * share).to_f32();
-        }
+        });
     }
 }
 
@@ -98,7 +119,7 @@ mod tests {
         let all = Region { x: 0, y: 0, width: 41, height: 33 };
         let (mut together, mut single) = (Tracer::new(&scene, &settings), Tracer::new(&scene, &settings));
         let mut pixels = Vec::new();
-        tile(&mut together, scene.camera(), &settings, all, &mut pixels);
+        tile(&mut together, &mut Buffers::default(), scene.camera(), &settings, all, &mut pixels);
         for (i, pixel) in pixels.iter().enumerate() {
             let mut sum = Color::BLACK;
             for (dx, dy) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {

@@ -2,10 +2,11 @@
 //! one by one: the ways differ only in which boxes they pass over.
 
 use super::frame::{PACKET, Side, Window};
+use super::order::{Place, put_together};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
 use super::stream::interleave;
-use super::{FindNearest, Found, Geometry, is_legal};
+use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::{Departure, Interval, Primitive, Ray};
 use alloc::vec::Vec;
@@ -15,9 +16,6 @@ const BLOCK: usize = 1024;
 
 /// The rays in flight when interleaved.
 const IN_FLIGHT: usize = 12;
-
-/// Trees larger than this are not likely to stay in a core's own cache.
-const CACHE: usize = 1 << 20;
 
 /// What is asked about each ray of a batch.
 trait Request {
@@ -261,8 +259,13 @@ fn go_together(rays: &[Ray]) -> bool {
     else {
         return false;
     };
-    let most = first.direction.abs().max_element() * 0.25;
-    let near = |ray: &Ray| (ray.direction - first.direction).abs().max_element() <= most;
+    let size = |ray: &Ray| ray.direction.abs().max_element();
+    let most = size(first);
+    // Directions of unlike lengths may be alike.
+    let near = |ray: &Ray| {
+        let size = size(ray);
+        (ray.direction * most - first.direction * size).abs().max_element() <= most * size * 0.25
+    };
     near(last) && near(middle)
 }
 
@@ -303,8 +306,7 @@ impl Geometry {
         occluded: &mut [bool],
     ) {
         // The shapes that are left, first: what they block needs no search.
-        let (mut free, mut free_within) = (Vec::with_capacity(rays.len()), Vec::with_capacity(rays.len()));
-        let (mut skip, mut numbers) = (Vec::with_capacity(rays.len()), Vec::with_capacity(rays.len()));
+        let mut searched = Vec::with_capacity(rays.len());
         let all = rays.iter().zip(within).zip(from).zip(occluded.iter_mut());
         for (number, (((ray, within), from), occluded)) in all.enumerate() {
             *occluded = is_legal(ray, *within)
@@ -312,22 +314,31 @@ impl Geometry {
                     .departed(Some(from))
                     .is_some_and(|(from, shape)| shape.hit_leaving(ray, *within, from).is_some());
             if !*occluded {
-                free.push(*ray);
-                free_within.push(*within);
-                skip.push(from.object);
-                numbers.push(number);
+                searched.push(Place::new(ray, number));
             }
         }
-        let mut answers = alloc::vec![false; free.len()];
-        vectorize(Batch::<AnyRequest> {
-            geometry: self,
-            rays: &free,
-            within: &free_within,
-            skip: &skip,
-            answers: &mut answers,
-        });
-        for (number, answer) in numbers.into_iter().zip(answers) {
-            occluded[number] = answer;
+        put_together(&mut searched);
+        let room = searched.len().min(BLOCK);
+        let (mut free, mut free_within) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        let (mut skip, mut answers) = (Vec::with_capacity(room), alloc::vec![false; room]);
+        for block in searched.chunks(BLOCK) {
+            let numbers = || block.iter().map(|place| place.number as usize);
+            free.clear();
+            free.extend(numbers().map(|number| rays[number]));
+            free_within.clear();
+            free_within.extend(numbers().map(|number| within[number]));
+            skip.clear();
+            skip.extend(numbers().map(|number| from[number].object));
+            vectorize(Batch::<AnyRequest> {
+                geometry: self,
+                rays: &free,
+                within: &free_within,
+                skip: &skip,
+                answers: &mut answers,
+            });
+            for (number, answer) in numbers().zip(&answers) {
+                occluded[number] = *answer;
+            }
         }
     }
 }

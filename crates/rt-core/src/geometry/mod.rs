@@ -16,6 +16,7 @@ mod batch;
 mod builder;
 mod cube;
 mod frame;
+mod order;
 mod outline;
 mod packet;
 mod query;
@@ -36,6 +37,9 @@ use query::{Any, Contest, Crossings, Nearest, Path, Query};
 use store::{Run, Store};
 use traverse::traverse;
 use tree::{Child, Tree};
+
+/// Trees larger than this are not likely to stay in a core's own cache.
+const CACHE: usize = 1 << 20;
 
 /// A hit and the object it belongs to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,12 +3,12 @@
 //! Inner boxes are tested once for all rays, leaves with each ray. Source of the idea: Reshetov, Soupikov, Hurley
 //! 2005, "Multi-level ray tracing algorithm" (doi:10.1145/1073204.1073329).
 
-use super::Geometry;
 use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
 use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::Child;
+use super::{CACHE, Geometry};
 use crate::Ray;
 use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
 use crate::math::exp2i;
@@ -183,7 +183,9 @@ impl<Q: Query> Packet<'_, Q> {
     #[inline(always)]
     pub fn search<L: Lanes>(&mut self, lanes: L, geometry: &Geometry) -> u32 {
         let active = self.active;
-        let mut rest = [0..GROUPS, 0..0, 0..0];
+        // Halves of halves, down to one group.
+        let mut rest = [const { 0..0 }; GROUPS];
+        rest[0] = 0..GROUPS;
         let mut left = 1;
         let mut done = 0;
         while left > 0 {
@@ -193,16 +195,17 @@ impl<Q: Query> Packet<'_, Q> {
             if members.count_ones() < FEWEST {
                 continue;
             }
-            let whole = groups.len() == GROUPS;
+            let (start, middle, end) = (groups.start, (groups.start + groups.end) / 2, groups.end);
             match bundle(lanes, &self.side, groups, geometry.tree.box_size) {
                 Some(bundle) => {
                     done |= members;
                     self.active = members;
                     self.traverse(lanes, geometry, &bundle);
                 }
-                None if whole => {
-                    rest = [0..GROUPS / 2, GROUPS / 2..GROUPS, 0..0];
-                    left = 2;
+                None if start < middle => {
+                    rest[left] = middle..end;
+                    rest[left + 1] = start..middle;
+                    left += 2;
                 }
                 None => {}
             }
@@ -227,6 +230,7 @@ impl<Q: Query> Packet<'_, Q> {
         let pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-21) + self.side.error);
         let ball_pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-18) + self.side.error);
         let mut end = greatest(lanes, &depths);
+        let fetch = geometry.tree.bytes() > CACHE;
 
         let mut room = Room::<STACK>::default();
         let mut stack = room.enter();
@@ -242,7 +246,20 @@ impl<Q: Query> Packet<'_, Q> {
                     mask &= mask - 1;
                     // A leaf is remembered by its place in the node, for its box.
                     let child = node.children[i];
-                    let place = if child.as_node().is_some() { child } else { Child::place(index, i) };
+                    let place = match child.as_node() {
+                        Some(next) => {
+                            if fetch && let Some(node) = geometry.tree.nodes.get(next) {
+                                lanes.prefetch(node);
+                            }
+                            child
+                        }
+                        None => {
+                            if fetch {
+                                geometry.store.prefetch(lanes, child.run());
+                            }
+                            Child::place(index, i)
+                        }
+                    };
                     stack.insert_descending(base, entry(at[i], place));
                 }
             }
