@@ -8,7 +8,7 @@ use super::query::{Any, Nearest, Query};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
-use crate::{Departure, Interval, Primitive, Ray};
+use crate::{Departure, Interval, Ray};
 use alloc::vec::Vec;
 
 /// The rays that are looked at together: those without company are collected over a block.
@@ -309,10 +309,8 @@ impl Geometry {
         let mut searched = Vec::with_capacity(rays.len());
         let all = rays.iter().zip(within).zip(from).zip(occluded.iter_mut());
         for (number, (((ray, within), from), occluded)) in all.enumerate() {
-            *occluded = is_legal(ray, *within)
-                && self
-                    .departed(Some(from))
-                    .is_some_and(|(from, shape)| shape.hit_leaving(ray, *within, from).is_some());
+            *occluded =
+                is_legal(ray, *within) && self.store.hit_leaving(&self.shapes, ray, *within, from).is_some();
             if !*occluded {
                 searched.push(Place::new(ray, number));
             }

@@ -25,7 +25,7 @@ mod stream;
 mod traverse;
 mod tree;
 
-use crate::kernel::{Lanes, Vectorized, prefetch, vec_on_large_pages, vectorize};
+use crate::kernel::{Lanes, Vectorized, vec_on_large_pages, vectorize};
 use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
@@ -135,6 +135,9 @@ impl Geometry {
         }
         self.tree = builder::build(&mut items);
         self.store.reserve(counts);
+        if size_of_val(&self.shapes[..]) > CACHE {
+            self.store.remember_places(self.shapes.len());
+        }
         for item in items {
             self.store.push(&self.shapes[item.object as usize], item.object);
         }
@@ -200,16 +203,14 @@ impl Geometry {
 
     /// The full record of a hit found with this ray.
     pub fn surface(&self, ray: &Ray, found: Found) -> Surface {
-        self.shapes[found.object as usize].surface(ray, found.hit)
+        self.store.surface(&self.shapes, found.object, ray, found.hit)
     }
 
     /// Asks for the memory of an object whose [`surface`](Geometry::surface) will soon be asked for: among many objects
     /// that takes longer than the record. Has no effect but on time.
     #[inline]
     pub fn prefetch(&self, found: Found) {
-        if let Some(shape) = self.shapes.get(found.object as usize) {
-            prefetch(shape);
-        }
+        self.store.prefetch_object(&self.shapes, found.object);
     }
 
     /// The shape that the ray leaves, if it is one of these.

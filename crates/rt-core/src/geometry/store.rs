@@ -1,9 +1,9 @@
 //! The shapes by kind, each kind in the order of the leaves: what a ray touches, without the width of [`Shape`].
 
 use super::query::Query;
-use crate::kernel::Lanes;
+use crate::kernel::{Lanes, prefetch};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
-use crate::{Primitive, Ray, Shape};
+use crate::{Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -70,11 +70,19 @@ macro_rules! store {
         #[derive(Clone, Debug, Default)]
         pub(super) struct Store {
             $($field: Column<$type>,)*
+            /// By object: kind and index. Empty where shapes are few, or not in the store.
+            places: Vec<u32>,
         }
 
         impl Store {
             /// The kind of spheres.
             pub const BALL: u32 = 0;
+
+            /// The bits of an index within a kind.
+            const INDEX_BITS: u32 = 28;
+
+            /// A place of a kind that does not exist.
+            const NOWHERE: u32 = u32::MAX;
 
             /// The number of kinds.
             pub const KINDS: usize = [$($index),*].len();
@@ -91,8 +99,18 @@ macro_rules! store {
                 $(self.$field.reserve(counts[$index]);)*
             }
 
+            /// Makes room for the places of this many objects, before any is added.
+            pub fn remember_places(&mut self, count: usize) {
+                self.places = crate::kernel::vec_on_large_pages(count);
+                self.places.resize(count, Self::NOWHERE);
+            }
+
             /// Adds a shape at the end of its kind.
             pub fn push(&mut self, shape: &Shape, object: u32) {
+                let (kind, index) = (Self::kind_of(shape), self.count(Self::kind_of(shape)));
+                if index < 1 << Self::INDEX_BITS && let Some(place) = self.places.get_mut(object as usize) {
+                    *place = kind << Self::INDEX_BITS | index as u32;
+                }
                 match shape {
                     $(Shape::$kind(shape) => self.$field.push(shape.clone(), object),)*
                 }
@@ -108,7 +126,57 @@ macro_rules! store {
 
             /// The bytes of memory in use.
             pub fn bytes(&self) -> usize {
-                0 $(+ self.$field.bytes())*
+                self.places.capacity() * size_of::<u32>() $(+ self.$field.bytes())*
+            }
+
+            /// Kind and index of an object; one of no kind where they are not known.
+            #[inline(always)]
+            fn place(&self, object: u32) -> (u32, usize) {
+                let place = self.places.get(object as usize).copied().unwrap_or(Self::NOWHERE);
+                (place >> Self::INDEX_BITS, (place & ((1 << Self::INDEX_BITS) - 1)) as usize)
+            }
+
+            /// [`Primitive::surface`] of an object, which is one of `shapes`: the copy here was just seen by the search.
+            #[inline]
+            pub fn surface(&self, shapes: &[Shape], object: u32, ray: &Ray, hit: Hit) -> Surface {
+                match self.place(object) {
+                    $(($index, index) if index < self.$field.shapes.len() => {
+                        self.$field.shapes[index].surface(ray, hit)
+                    })*
+                    _ => shapes[object as usize].surface(ray, hit),
+                }
+            }
+
+            /// [`Primitive::hit_leaving`] of the object that is left, if it is one of `shapes`.
+            #[inline]
+            pub fn hit_leaving(
+                &self,
+                shapes: &[Shape],
+                ray: &Ray,
+                within: Interval,
+                from: &Departure,
+            ) -> Option<Hit> {
+                match self.place(from.object) {
+                    $(($index, index) if index < self.$field.shapes.len() => {
+                        self.$field.shapes[index].hit_leaving(ray, within, from)
+                    })*
+                    _ => shapes.get(from.object as usize)?.hit_leaving(ray, within, from),
+                }
+            }
+
+            /// Asks for the memory of an object, one of `shapes`.
+            #[inline]
+            pub fn prefetch_object(&self, shapes: &[Shape], object: u32) {
+                match self.place(object) {
+                    $(($index, index) if index < self.$field.shapes.len() => {
+                        prefetch(&self.$field.shapes[index]);
+                    })*
+                    _ => {
+                        if let Some(shape) = shapes.get(object as usize) {
+                            prefetch(shape);
+                        }
+                    }
+                }
             }
 
             /// Asks for the memory of the run's first shape.
