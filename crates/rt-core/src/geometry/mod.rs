@@ -19,6 +19,7 @@ mod frame;
 mod outline;
 mod packet;
 mod query;
+mod record;
 mod store;
 mod stream;
 mod traverse;
