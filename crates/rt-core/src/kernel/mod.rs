@@ -19,6 +19,7 @@ mod stack;
 mod task;
 #[cfg(test)]
 mod tests;
+mod triple;
 
 pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
@@ -29,6 +30,7 @@ pub use pair::{Pair, Pairs};
 pub use real::{Four, Real, Vector};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
+pub use triple::{Triple, Which};
 
 /// Runs the computation with the widest lanes of the [`level`] in use.
 #[inline(always)]

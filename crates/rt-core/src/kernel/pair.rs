@@ -23,7 +23,7 @@ macro_rules! sse2 {
 
 /// Two numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair(Lanes);
+pub struct Pair(pub(super) Lanes);
 
 /// Pairs in memory, where they can be operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,11 @@ impl Pair {
     #[inline(always)]
     pub fn new(low: f64, high: f64) -> Pair {
         Pair(sse2!(_mm_set_pd(high, low)))
+    }
+    /// The number twice.
+    #[inline(always)]
+    pub fn splat(x: f64) -> Pair {
+        Pair(sse2!(_mm_set1_pd(x)))
     }
     /// The first number.
     #[inline(always)]
@@ -76,6 +81,16 @@ impl Pair {
     pub fn max(self, other: Pair) -> Pair {
         Pair(sse2!(_mm_max_pd(self.0, other.0)))
     }
+    /// The lesser of each two; that of `other` where one is NaN.
+    #[inline(always)]
+    pub fn min(self, other: Pair) -> Pair {
+        Pair(sse2!(_mm_min_pd(self.0, other.0)))
+    }
+    /// Whether a number of either pair is NaN.
+    #[inline(always)]
+    pub fn is_nan(self, other: Pair) -> bool {
+        sse2!(_mm_movemask_pd(_mm_cmpunord_pd(self.0, other.0))) != 0
+    }
     /// Whether both are less than those of the other: false for NaN.
     #[inline(always)]
     pub fn is_below(self, other: Pair) -> bool {
@@ -94,6 +109,11 @@ impl Pair {
     #[inline(always)]
     pub fn new(low: f64, high: f64) -> Pair {
         Pair([low, high])
+    }
+    /// The number twice.
+    #[inline(always)]
+    pub fn splat(x: f64) -> Pair {
+        Pair([x, x])
     }
     /// The first number.
     #[inline(always)]
@@ -125,6 +145,17 @@ impl Pair {
     pub fn max(self, other: Pair) -> Pair {
         let greater = |a: f64, b: f64| if a > b { a } else { b };
         Pair([greater(self.0[0], other.0[0]), greater(self.0[1], other.0[1])])
+    }
+    /// The lesser of each two; that of `other` where one is NaN.
+    #[inline(always)]
+    pub fn min(self, other: Pair) -> Pair {
+        let lesser = |a: f64, b: f64| if a < b { a } else { b };
+        Pair([lesser(self.0[0], other.0[0]), lesser(self.0[1], other.0[1])])
+    }
+    /// Whether a number of either pair is NaN.
+    #[inline(always)]
+    pub fn is_nan(self, other: Pair) -> bool {
+        self.0[0].is_nan() | self.0[1].is_nan() | other.0[0].is_nan() | other.0[1].is_nan()
     }
     /// Whether both are less than those of the other: false for NaN.
     #[inline(always)]

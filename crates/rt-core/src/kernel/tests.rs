@@ -115,6 +115,9 @@ fn pairs_are_two_numbers() {
             same(p.abs(), a.abs(), b.abs());
             let greater = |a: f64, b: f64| if a > b { a } else { b };
             same(p.max(q), greater(a, c), greater(b, d));
+            let lesser = |a: f64, b: f64| if a < b { a } else { b };
+            same(p.min(q), lesser(a, c), lesser(b, d));
+            assert_eq!(p.is_nan(q), [a, b, c, d].into_iter().any(f64::is_nan));
             assert_eq!(p.is_below(q), a < c && b < d);
             if !a.is_nan() && !b.is_nan() {
                 assert_eq!(p.signs(), a.is_sign_negative() as i32 | (b.is_sign_negative() as i32) << 1);
@@ -122,6 +125,46 @@ fn pairs_are_two_numbers() {
         }
         let pairs = Pairs([[a, b], [b, a]]);
         assert_eq!(lanes(pairs.get(1)), [bits(b), bits(a)]);
+        assert_eq!(lanes(Pair::splat(a)), [bits(a), bits(a)]);
+    }
+}
+
+/// Of three numbers the same are told as of each by itself.
+#[test]
+fn triples_are_three_numbers() {
+    let numbers = [0.0, -0.0, 1.5, -3.7, 1e-310, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+    let triple = |v: [f64; 3]| Triple { x: v[0], y_z: Pair::new(v[1], v[2]) };
+    let all = |v: Triple| [v.x, v.y_z.low(), v.y_z.high()];
+    let which = |v: [bool; 3]| u32::from(v[0]) + 4 * u32::from(v[1]) + 8 * u32::from(v[2]);
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
+    let lesser = |a: f64, b: f64| if a < b { a } else { b };
+    let count = numbers.len();
+    for case in 0..count.pow(3) {
+        let v = [case, case / count, case / count / count].map(|k| numbers[k % count]);
+        let w = [v[1], v[2], v[0]];
+        let (p, q) = (triple(v), triple(w));
+        let same = |t: Triple, f: fn(f64, f64) -> f64| {
+            assert_eq!(all(t).map(bits), [0, 1, 2].map(|k| bits(f(v[k], w[k]))), "{v:?}");
+        };
+        same(p - q, |a, b| a - b);
+        same(p * q, |a, b| a * b);
+        same(p.min(q), lesser);
+        same(p.max(q), greater);
+        assert_eq!(p.is_nan(q), v.into_iter().any(f64::is_nan));
+        assert_eq!(p.is_nan(triple([1.0; 3])), p.is_nan(q));
+        assert_eq!(p.is_finite(), v.into_iter().all(f64::is_finite));
+        if !p.is_nan(q) {
+            assert!(p.least() == v.into_iter().fold(f64::INFINITY, f64::min));
+            assert!(p.greatest() == v.into_iter().fold(f64::NEG_INFINITY, f64::max));
+            let all = triple([f64::INFINITY; 3]).at_least(1.0);
+            assert_eq!(all.and(p.negative()).bits(), which(v.map(f64::is_sign_negative)));
+        }
+        for limit in [1e-310, 1.5, f64::INFINITY] {
+            let (least, most) = (p.at_least(limit), p.at_most(limit));
+            assert_eq!(least.bits(), which(v.map(|x| x >= limit)));
+            assert_eq!(most.bits(), which(v.map(|x| !(x > limit))));
+            assert_eq!(least.and(most).bits(), least.bits() & most.bits());
+        }
     }
 }
 

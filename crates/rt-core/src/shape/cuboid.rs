@@ -9,7 +9,7 @@ use super::flat::{self, LEAST_CERTAIN, U};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Pair, Pairs, Product, Task, Triple, Which, run};
 use crate::math::{exp2i, exponent};
 use crate::scaled::{checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
@@ -29,8 +29,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// away from the face 5, and towards it), u to the right as seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
-    min: DVec3,
-    max: DVec3,
+    /// Its planes: those across x, the lower ones across y and z, the upper ones.
+    planes: Pairs<3>,
     turn: Option<Turn>,
 }
 
@@ -57,17 +57,41 @@ impl Cuboid {
         if !min.cmple(max).all() {
             return Err(Error::Unordered { min, max });
         }
-        Ok(Cuboid { min, max, turn: None })
+        Ok(Cuboid { planes: Cuboid::in_pairs(min, max), turn: None })
+    }
+
+    #[inline(always)]
+    fn min(&self) -> DVec3 {
+        let Pairs([[x, _], [y, z], _]) = self.planes;
+        DVec3::new(x, y, z)
+    }
+
+    #[inline(always)]
+    fn max(&self) -> DVec3 {
+        let Pairs([[_, x], _, [y, z]]) = self.planes;
+        DVec3::new(x, y, z)
+    }
+
+    /// As it keeps its planes.
+    fn in_pairs(min: DVec3, max: DVec3) -> Pairs<3> {
+        Pairs([[min.x, max.x], [min.y, min.z], [max.y, max.z]])
+    }
+
+    /// The lower planes and the upper ones.
+    #[inline(always)]
+    fn planes(&self) -> [Triple; 2] {
+        let Pairs([[min, max], _, _]) = self.planes;
+        [Triple { x: min, y_z: self.planes.get(1) }, Triple { x: max, y_z: self.planes.get(2) }]
     }
 
     /// The corner that was given as the least, in the world: the anchor of local coordinates.
     pub fn corner(&self) -> DVec3 {
-        self.turn.map_or(self.min, |turn| turn.corner)
+        self.turn.map_or(self.min(), |turn| turn.corner)
     }
 
     /// The lengths of the edges along the box's own axes.
     pub fn size(&self) -> DVec3 {
-        self.max - self.min
+        self.max() - self.min()
     }
 
     /// The box's own axes in the world, as unit vectors.
@@ -81,12 +105,12 @@ impl Cuboid {
     /// As [`Cuboid::new`].
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
         if self.turn.is_none() && by.rotation() == DMat3::IDENTITY {
-            return Cuboid::new(by.point(self.min), by.point(self.max));
+            return Cuboid::new(by.point(self.min()), by.point(self.max()));
         }
         let corner = checked_point("cuboid corner", by.point(self.corner()))?;
         let max = checked_point("cuboid size", self.size() * by.scale())?;
         let axes = self.axes().map(|axis| flat::unit(flat::doubles(by.direction(axis))));
-        Ok(Cuboid { min: DVec3::ZERO, max, turn: Some(Turn { corner, axes }) })
+        Ok(Cuboid { planes: Cuboid::in_pairs(DVec3::ZERO, max), turn: Some(Turn { corner, axes }) })
     }
 
     /// Both crossings with the line, in double-double: which faces and where, for the rays in doubt.
@@ -97,50 +121,53 @@ impl Cuboid {
     }
 
     /// The first crossing with a box along the world's axes, where a few comparisons can tell: what [`Slabs::first`] finds, to
-    /// the bit. Crossings behind the origin are left to that.
+    /// the bit, and nothing beside or behind.
     ///
-    /// In units of 2^-600 no inverse is subnormal. Sums that are numbers exclude all that leaves the range, rays that do not
-    /// move along an axis apart.
+    /// Each parameter errs by 7 u of itself at most: u from the difference, u from the product, 4 u from the inverse, which
+    /// loses two digits where the direction is beyond 2^1022. Positive numbers are ordered like their bits, and 7 u are 7 of
+    /// their steps at most. So two whose bits are [`STEPS`] apart are in order, with negative ones below all. What underflows
+    /// is below [`TINY`].
     #[inline(always)]
     fn plainly(&self, ray: &Ray, within: Interval) -> Result<Option<Hit>, ()> {
-        const UNIT: f64 = exp2i(600);
         let (o, d) = (ray.origin, ray.direction);
-        let inverse = UNIT / d;
-        let (a, b) = ((self.min - o) * inverse, (self.max - o) * inverse);
-        let near = [lesser(a.x, b.x), lesser(a.y, b.y), lesser(a.z, b.z)];
-        let far = [greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z)];
-        let sums = (a.x + a.y) + a.z;
-        if !sums.is_finite() && !self.is_simple(&a, &b, &d) {
+        // Differences and inverses with the other sign: the origin is read once.
+        let backward = Triple { x: -1.0 / d.x, y_z: Pair::splat(-1.0) / Pair::new(d.y, d.z) };
+        let start = Triple { x: o.x, y_z: Pair::new(o.y, o.z) };
+        let [min, max] = self.planes();
+        let (a, b) = ((start - min) * backward, (start - max) * backward);
+        if !a.is_finite() && !is_simple(a, b, &d) {
             return Err(());
         }
-        let entry = greater(near[0], greater(near[1], near[2]));
-        let leave = lesser(far[0], lesser(far[1], far[2]));
-        // In this order NaN stays.
-        let (min, max) = (greater(TINY, within.min * UNIT), within.max * UNIT);
-        // Parameters err by 4 u of themselves.
-        let (least, most) = (entry * (1.0 - 10.0 * U), entry * (1.0 + 10.0 * U));
-        if (least > min) & (lesser(leave, max) > most) {
-            let (axis, back) = only(near.map(|t| t >= least), &ray.direction)?;
-            return Ok(Some(Hit::inside(entry * (1.0 / UNIT), 2 * axis + back, 0)));
+        if within.min.is_nan() | within.max.is_nan() {
+            return Err(());
         }
-        // The smaller one, which is a number where the other is infinite, tells how far apart they have to be.
-        if entry - leave > (10.0 * U) * lesser(entry.abs(), leave.abs()) + TINY {
-            return Ok(None);
+        let (near, far) = (a.min(b), a.max(b));
+        let (entry, leave) = (near.greatest(), far.least());
+        let [first, last, begin, end] = [entry, leave, within.min, within.max].map(|t| t.to_bits() as i64);
+        let until = last.min(end);
+        if first > TINY {
+            if first - STEPS > begin {
+                if first + STEPS < until {
+                    let (face, back) = only(near.at_least(entry * (1.0 - 16.0 * U)), backward)?;
+                    return Ok(Some(Hit::inside(entry, face + u32::from(back), 0)));
+                } else if first - STEPS > until {
+                    return Ok(None);
+                }
+            }
+            return Err(());
         }
-        let (least, most) = (leave * (1.0 - 10.0 * U), leave * (1.0 + 10.0 * U));
-        if (within.min * UNIT > entry + ((10.0 * U) * entry.abs() + TINY)) & (least > min) & (max > most) {
-            let (axis, back) = only(far.map(|t| t <= most), &ray.direction)?;
-            return Ok(Some(Hit::inside(leave * (1.0 / UNIT), 2 * axis + 1 - back, 1)));
+        // As unsigned numbers, bits with that of the sign are the greatest.
+        let is_behind = |t: i64| t as u64 > (i64::MIN | TINY) as u64;
+        if begin >= 0 {
+            if is_behind(last) {
+                return Ok(None);
+            }
+            if is_behind(first) && last > TINY && last - STEPS > begin && last + STEPS < end {
+                let (face, back) = only(far.at_most(leave * (1.0 + 16.0 * U)), backward)?;
+                return Ok(Some(Hit::inside(leave, face + u32::from(!back), 1)));
+            }
         }
         Err(())
-    }
-
-    /// Whether a ray that does not move along an axis, or hardly, meets or passes the planes across that for certain.
-    #[inline(always)]
-    fn is_simple(&self, a: &DVec3, b: &DVec3, d: &DVec3) -> bool {
-        let moves = |d: f64| (d.abs() > exp2i(-400)) | (d == 0.0);
-        let is_nan = |a: f64, b: f64| a.is_nan() | b.is_nan();
-        !(is_nan(a.x, b.x) | is_nan(a.y, b.y) | is_nan(a.z, b.z)) & moves(d.x) & moves(d.y) & moves(d.z)
     }
 
     /// The first crossing of a turned box, or one that is not easily told.
@@ -191,8 +218,8 @@ impl Cuboid {
     #[inline(always)]
     fn span(&self, ray: &Ray) -> Slabs {
         let inverse = 1.0 / ray.direction;
-        let a = (self.min - ray.origin) * inverse;
-        let b = (self.max - ray.origin) * inverse;
+        let a = (self.min() - ray.origin) * inverse;
+        let b = (self.max() - ray.origin) * inverse;
         // Differences, quotients and products round three times; the fourth u pays for second order terms. Along an
         // axis in which the ray does not move it lies between the planes or beside them: both parameters are infinite.
         // Quotients of denormal directions, and a ray within a plane (0 times infinity), are left to exact arithmetic.
@@ -213,8 +240,8 @@ impl Cuboid {
         let (w, d) = (ray.origin - turn.corner, ray.direction);
         let along = |v: DVec3| DVec3::new(turn.axes[0].dot(v), turn.axes[1].dot(v), turn.axes[2].dot(v));
         let (start, inverse) = (along(w), 1.0 / along(d));
-        let a = (self.min - start) * inverse;
-        let b = (self.max - start) * inverse;
+        let a = (self.min() - start) * inverse;
+        let b = (self.max() - start) * inverse;
         // With axes of length 1, the start errs by 4 u |w| (1-norm), the direction by 3 u |d|; then as above.
         let (w, v) = (w.abs(), d.abs());
         let lengths = (5.0 * U) * (w.x + w.y + w.z);
@@ -312,20 +339,31 @@ impl Slabs {
     }
 }
 
-/// The only axis of those, and whether the direction goes back along it; `Err` where there are several.
+/// Whether a ray that does not move along an axis meets or passes the planes across that for certain: directions are
+/// zero, or so large that their inverses are finite, and no plane is one that the ray runs within.
 #[inline(always)]
-fn only(at: [bool; 3], d: &DVec3) -> Result<(u32, u32), ()> {
-    let at = at[0] as usize | (at[1] as usize) << 1 | (at[2] as usize) << 2;
-    // One bit alone: 1, 2 and 4 stand for the axes 0, 1 and 2.
-    if at & (at - 1) != 0 {
-        return Err(());
-    }
-    let (k, parts): (usize, &[f64; 3]) = (at >> 1, d.as_ref());
-    Ok((k as u32, parts[if k < 2 { k } else { 2 }].is_sign_negative() as u32))
+fn is_simple(a: Triple, b: Triple, d: &DVec3) -> bool {
+    // Subnormal numbers have the bits from 1 to 2^52 - 1, and their sign; zero is the last in this order.
+    let is_subnormal = |d: f64| (d.to_bits() << 1).wrapping_sub(1) < (1 << 53) - 1;
+    !(is_subnormal(d.x) || is_subnormal(d.y) || is_subnormal(d.z) || a.is_nan(b))
 }
 
-/// In units of 2^-600, more than all that underflow can take.
-const TINY: f64 = exp2i(-400);
+/// Twice the only axis of those, and whether the direction goes back along it; `Err` where there are several.
+#[inline(always)]
+fn only(at: Which, backward: Triple) -> Result<(u32, bool), ()> {
+    let bits = at.bits();
+    if bits & (bits - 1) != 0 {
+        return Err(());
+    }
+    // 1, 4 and 8 stand for the axes 0, 1 and 2.
+    Ok((bits >> 1, at.and(backward.negative()).bits() == 0))
+}
+
+/// More than two parameters err together, in steps between neighbouring numbers, and two roundings.
+const STEPS: i64 = 16;
+
+/// More than all that underflow can take: the bits of 2^-900.
+const TINY: i64 = (1023 - 900) << 52;
 
 /// One crossing of the line: the face, and the parameter correctly rounded.
 #[derive(Clone, Copy, Debug)]
@@ -397,11 +435,11 @@ impl Task for Span<'_> {
     type Output = Option<[Crossing; 2]>;
     #[inline(always)]
     fn run<P: Product>(self) -> Self::Output {
-        let Cuboid { min, max, turn } = self.cuboid;
+        let (min, max, turn) = (self.cuboid.min(), self.cuboid.max(), &self.cuboid.turn);
         let Ray { origin: o, direction: d } = *self.ray;
         // The axes of a turned box mix the components, in units of the largest ones.
         let (direction, direction_power) = flat::prescaled(d);
-        let power = flat::power_of((self.cuboid.corner() - o).abs().max(*max - *min));
+        let power = flat::power_of((self.cuboid.corner() - o).abs().max(max - min));
         let scale = exp2i(-power);
         let (mut near, mut far): (Option<Fraction>, Option<Fraction>) = (None, None);
         for i in 0..3 {
@@ -505,11 +543,11 @@ impl Piece for Face<'_> {
     /// Along the world's axes the plane of a face goes through a coordinate given; turned, it lies `size` away.
     #[inline(always)]
     fn plane(&self) -> ExactPlane {
-        let Cuboid { min, max, turn } = self.cuboid;
+        let (min, max, turn) = (self.cuboid.min(), self.cuboid.max(), &self.cuboid.turn);
         let k = self.k;
         match turn {
             None => ExactPlane {
-                anchor: if self.upper { min.with_axis(k, coordinate(*max, k)) } else { *min },
+                anchor: if self.upper { min.with_axis(k, coordinate(max, k)) } else { min },
                 normal: flat::doubles(WORLD[k]),
                 axis: Some(k as u8),
                 offset: 0.0,
@@ -518,7 +556,7 @@ impl Piece for Face<'_> {
                 anchor: turn.corner,
                 normal: flat::doubles(turn.axes[k]),
                 axis: None,
-                offset: if self.upper { coordinate(*max, k) } else { 0.0 },
+                offset: if self.upper { coordinate(max, k) } else { 0.0 },
             },
         }
     }
@@ -529,15 +567,15 @@ impl Piece for Face<'_> {
 
     #[inline(always)]
     fn record<P: Product>(&self, at: &Meeting) -> Surface {
-        let Cuboid { min, max, turn } = self.cuboid;
-        let size = *max - *min;
+        let (min, max, turn) = (self.cuboid.min(), self.cuboid.max(), &self.cuboid.turn);
+        let size = max - min;
         let across = if self.upper { coordinate(size, self.k) } else { 0.0 };
         // The hit is on the face; what double-double leaves beside it is noise.
         let on_face = |p: DVec3| flat::clamped(p.with_axis(self.k, across), DVec3::ZERO, size);
         let (point, local, object_point) = match turn {
             None => {
                 let local = on_face(at.local());
-                (flat::clamped(at.point(self.plane().anchor), *min, *max), local, local)
+                (flat::clamped(at.point(self.plane().anchor), min, max), local, local)
             }
             Some(turn) => {
                 let along =
@@ -553,8 +591,8 @@ impl Piece for Face<'_> {
     }
 
     fn parallel(&self, _: &Ray, hit: Hit) -> Surface {
-        let Cuboid { min, max, .. } = self.cuboid;
-        Surface::new(hit.t(), self.cuboid.corner(), DVec3::ZERO, self.normal(), (*max - *min).length())
+        let (min, max) = (self.cuboid.min(), self.cuboid.max());
+        Surface::new(hit.t(), self.cuboid.corner(), DVec3::ZERO, self.normal(), (max - min).length())
     }
 }
 
@@ -586,17 +624,17 @@ impl Primitive for Cuboid {
 
     fn bounds(&self) -> Option<Aabb> {
         let Some(turn) = &self.turn else {
-            return Some(flat::outward(DVec3::ZERO, self.min, self.max));
+            return Some(flat::outward(DVec3::ZERO, self.min(), self.max()));
         };
         let (mut least, mut most) = (DVec3::ZERO, DVec3::ZERO);
-        for (axis, size) in turn.axes.iter().zip(self.max.to_array()) {
+        for (axis, size) in turn.axes.iter().zip(self.max().to_array()) {
             let edge = *axis * size;
             least += edge.min(DVec3::ZERO);
             most += edge.max(DVec3::ZERO);
         }
         // The planes meet where the dual axes say: those of rounded unit axes differ by a few u from the axes
         // themselves. Products and sums round by 3 u of the size.
-        let slack = DVec3::splat(16.0 * U * self.max.element_sum());
+        let slack = DVec3::splat(16.0 * U * self.max().element_sum());
         Some(flat::outward(turn.corner, least - slack, most + slack))
     }
 
