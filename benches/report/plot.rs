@@ -50,7 +50,9 @@ fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series
     let around = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
-        if low <= high { low / 1.6..high * 2.5 } else { 0.1..10.0 }
+        // Room for labels below the lowest point: a part of the length of the axis.
+        let room = 1.4 * (high / low).powf(0.06);
+        if low <= high { low / room..high * 2.5 } else { 0.1..10.0 }
     };
     let x_range = around(all().map(|p| p.0).collect());
     let y_range = around(all().map(|p| clamp(p.1)).collect());
@@ -80,6 +82,7 @@ fn draw(path: &Path, title: &str, x_label: &str, y_label: &str, series: &[Series
         let (x, y) = chart.backend_coord(&(*x, clamp(*y)));
         left += u32::from(y < 180 && x < 400);
         right += u32::from(y < 180 && x > 660);
+        labels.keep_free((x, y));
     }
     let corner = if left < right { SeriesLabelPosition::UpperLeft } else { SeriesLabelPosition::UpperRight };
     for (index, one) in series.iter().enumerate() {
@@ -134,11 +137,15 @@ fn tick(x: f64) -> String {
     }
 }
 
-/// Where labels stand already: each new one moves up or down until it is free.
+/// Where labels and points stand already: each new label moves up or down until it is free.
 #[derive(Default)]
 struct Labels(Vec<(i32, i32, i32)>);
 
 impl Labels {
+    fn keep_free(&mut self, (x, y): (i32, i32)) {
+        self.0.push((x - 7, y, 14));
+    }
+
     fn place(&mut self, (x, y): (i32, i32), label: &str) -> (i32, i32) {
         // Letters of this size are about 7 pixels wide, lines 13 high.
         let (left, width) = (x + 9, 7 * label.chars().count() as i32);

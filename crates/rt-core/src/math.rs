@@ -12,6 +12,7 @@ pub(crate) fn sqrt(x: f64) -> f64 {
 /// Two to the power of `exponent`, exactly, for `-1022 <= exponent <= 1023`.
 #[inline(always)]
 pub(crate) const fn exp2i(exponent: i32) -> f64 {
+    debug_assert!(-1023 < exponent && exponent < 1024);
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 

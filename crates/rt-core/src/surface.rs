@@ -37,7 +37,7 @@ pub struct Surface {
     /// The unit normal that shading uses: differs from `normal` on a smooth triangle only.
     pub shading_normal: DVec3,
     /// What the texture coordinates are made of.
-    coordinates: Coordinates,
+    pub(crate) coordinates: Coordinates,
     /// The error radius: the true point lies within this distance of `point`.
     pub error: f64,
 }

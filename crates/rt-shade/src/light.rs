@@ -2,6 +2,7 @@
 
 use crate::{Color, Error};
 use rt_core::glam::DVec3;
+use rt_core::kernel::{Real, Vector};
 
 /// The brightest legal channel of any colour, and the largest legal share: products of a few of them stay finite.
 pub(crate) const MOST_LIGHT: f64 = 1e30;
@@ -41,8 +42,17 @@ impl Attenuation {
     /// The factor on the light at this distance; at most 1e30, so that no colour overflows next to a lamp.
     #[inline]
     pub fn at(&self, distance: f64) -> f64 {
-        let divisor = self.constant + self.linear * distance + self.quadratic * (distance * distance);
-        (1.0 / divisor).min(MOST_LIGHT)
+        self.factor(distance)
+    }
+
+    /// [`at`](Attenuation::at), for any lanes.
+    #[inline(always)]
+    pub(crate) fn factor<R: Real>(&self, distance: R) -> R {
+        let of = |x| distance.all(x);
+        let divisor =
+            of(self.constant) + of(self.linear) * distance + of(self.quadratic) * (distance * distance);
+        let factor = of(1.0) / divisor;
+        R::if_less(factor, of(MOST_LIGHT), factor, of(MOST_LIGHT))
     }
 }
 
@@ -149,16 +159,19 @@ impl Light {
     /// The share of the light that goes into this unit direction, away from the lamp: 1 for a point light.
     #[inline]
     pub fn share(&self, direction: DVec3) -> f64 {
-        let Some(cone) = &self.cone else { return 1.0 };
-        let cosine = cone.axis.dot(direction);
-        if cosine >= cone.cos_inner {
-            1.0
-        } else if cosine > cone.cos_outer {
-            let s = (cosine - cone.cos_outer) / (cone.cos_inner - cone.cos_outer);
-            s * s * (3.0 - 2.0 * s)
-        } else {
-            0.0
-        }
+        self.share_into(Vector::from(direction))
+    }
+
+    /// [`share`](Light::share), for any lanes.
+    #[inline(always)]
+    pub(crate) fn share_into<R: Real>(&self, direction: Vector<R>) -> R {
+        let of = |x| direction.x.all(x);
+        let Some(cone) = &self.cone else { return of(1.0) };
+        let cosine = Vector::all(direction.x, cone.axis).dot(direction);
+        let s = (cosine - of(cone.cos_outer)) / of(cone.cos_inner - cone.cos_outer);
+        let between = s * s * (of(3.0) - of(2.0) * s);
+        let outer = R::if_less(of(cone.cos_outer), cosine, between, of(0.0));
+        R::if_at_most(of(cone.cos_inner), cosine, of(1.0), outer)
     }
 }
 

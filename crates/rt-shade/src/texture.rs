@@ -81,7 +81,8 @@ impl Checker {
         // numbers beyond the range of integers but for the largest one.
         let parity = |x: f64| {
             let x = x / self.size;
-            if x < EXACT { floor(x) as i64 & 1 } else { 0 }
+            let whole = x as i64;
+            if x.abs() < EXACT { (whole - i64::from(whole as f64 > x)) & 1 } else { 0 }
         };
         self.colors[((parity(p.x) ^ parity(p.y) ^ parity(p.z)) & 1) as usize]
     }

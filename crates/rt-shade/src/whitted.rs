@@ -16,8 +16,8 @@ use crate::medium::{Media, Medium};
 use crate::optics::{Refraction, mirror, refract};
 use crate::{Color, Light, Material, Scene, Settings, Stats};
 use rt_core::glam::DVec3;
-use rt_core::kernel::{Product, Task, run};
-use rt_core::{Departure, DirectionCube, Found, Interval, Ray, Side, Surface};
+use rt_core::kernel::{Four, Lanes, Product, Real, Task, Vector, Vectorized, run, vectorize};
+use rt_core::{Departure, DirectionCube, Found, Geometry, Interval, Ray, Side, Surface};
 
 /// Traces rays through a scene, one thread's worth.
 pub(crate) struct Tracer<'s> {
@@ -30,12 +30,13 @@ pub(crate) struct Tracer<'s> {
     filters: Vec<Color>,
     /// By lamp.
     queues: Vec<ShadowQueue>,
+    /// The records of first hits: room that is used again.
+    surfaces: Vec<Surface>,
     pub stats: Stats,
 }
 
-/// How many hits ahead of its record the memory of an object is asked for. Only time depends on it: the records of four take
-/// longer than a fetch from memory, some 100 ns.
-const AHEAD: usize = 4;
+/// As many records of hits as stay in the first cache until they are used.
+const NEAR: usize = 64;
 
 /// Shadow rays of many points to one lamp, to be cast together.
 #[derive(Default)]
@@ -49,6 +50,15 @@ struct ShadowQueue {
 }
 
 impl ShadowQueue {
+    #[inline(always)]
+    fn push(&mut self, number: usize, from: &Departure, lamp: DVec3, gift: Gift) {
+        let (ray, within) = shadow_ray(from, lamp);
+        self.rays.push(ray);
+        self.within.push(within);
+        self.from.push(*from);
+        self.gifts.push((number, gift));
+    }
+
     fn clear(&mut self) {
         self.rays.clear();
         self.within.clear();
@@ -58,11 +68,53 @@ impl ShadowQueue {
     }
 }
 
+/// Where light falls on a surface.
+#[derive(Clone, Copy)]
+struct Place<R> {
+    point: Vector<R>,
+    /// The shading normal, on the side of arrival.
+    normal: Vector<R>,
+    /// The unit direction of the ray that arrived.
+    direction: Vector<R>,
+}
+
 /// The light of one lamp at a point, before it is known whether anything is in the way.
-struct Arriving {
-    to_light: DVec3,
-    cosine: f64,
-    color: Color,
+struct Arriving<R> {
+    /// The cosine of its angle with the normal.
+    cosine: R,
+    /// The share of its light that the lamp sends this way.
+    share: R,
+    /// That times what the distance leaves of it.
+    strength: R,
+    /// The cosine of the angle between its mirror image and the ray that arrived.
+    along: R,
+}
+
+impl<R: Real> Arriving<R> {
+    #[inline(always)]
+    fn new(light: &Light, at: &Place<R>) -> Self {
+        let to_light = Vector::all(at.point.x, light.position()) - at.point;
+        let distance = to_light.length();
+        let to_light = to_light / distance;
+        let cosine = at.normal.dot(to_light);
+        let share = light.share_into(-to_light);
+        let mirrored = at.normal * (cosine.all(2.0) * cosine) - to_light;
+        Arriving {
+            cosine,
+            share,
+            strength: share * light.attenuation().factor(distance),
+            along: mirrored.dot(-at.direction),
+        }
+    }
+}
+
+impl Arriving<f64> {
+    /// Whether there is any light.
+    #[inline(always)]
+    fn is_some(&self) -> bool {
+        // A lamp at the very point has no direction, NaN, and gives nothing.
+        self.cosine > 0.0 && self.share != 0.0
+    }
 }
 
 /// What a lamp adds to the colour of a point: by its body, and by its gloss where it has one.
@@ -111,21 +163,121 @@ impl Task for Shade<'_, '_> {
     }
 }
 
-/// The first half of a colour: all but the light of the lamps and what rays bring that go on.
-struct Enqueue<'a, 's> {
-    tracer: &'a Tracer<'s>,
-    ray: &'a Ray,
-    found: Found,
+/// A hit of a ray from the eye.
+#[derive(Clone, Copy)]
+struct First {
+    /// The number of the ray.
     number: usize,
-    queues: &'a mut [ShadowQueue],
+    found: Found,
 }
 
-impl<'s> Task for Enqueue<'_, 's> {
-    type Output = (Color, Vertex<'s>);
+/// The light of the surfaces that rays from the eye hit: their colours, but for what rays bring that go on.
+struct LightMany<'a, 's> {
+    tracer: &'a mut Tracer<'s>,
+    rays: &'a [Ray],
+    surfaces: &'a [Surface],
+    hits: &'a [First],
+    colors: &'a mut [Color],
+    /// Where shadow rays wait, by lamp, if they are to be cast together.
+    queues: Option<&'a mut [ShadowQueue]>,
+}
+
+impl Vectorized for LightMany<'_, '_> {
+    type Output = ();
     #[inline(always)]
-    fn run<P: Product>(self) -> Self::Output {
-        let vertex = self.tracer.vertex(self.ray, self.found);
-        (self.tracer.enqueue(&vertex, self.number, self.queues), vertex)
+    fn run<L: Lanes>(mut self, lanes: L) {
+        for hits in self.hits.chunks(4) {
+            self.four(lanes, hits);
+        }
+    }
+}
+
+impl LightMany<'_, '_> {
+    /// Up to four hits.
+    #[inline(always)]
+    fn four<L: Lanes>(&mut self, lanes: L, hits: &[First]) {
+        let LightMany { tracer, rays, surfaces, colors, queues, .. } = self;
+        let scene = tracer.scene;
+        let Some(last) = hits.last() else { return };
+        // Places without a hit repeat the last.
+        let four = [0, 1, 2, 3].map(|i| hits.get(i).unwrap_or(last));
+        let surface = four.map(|hit| &surfaces[hit.number]);
+        let direction = Vector::new(lanes, four.map(|hit| rays[hit.number].direction));
+        let zero = direction.x.all(0.0);
+        let direction = direction * (zero.all(1.0) / direction.length());
+        let shading = Vector::new(lanes, surface.map(|surface| surface.shading_normal));
+        let away = direction.dot(shading);
+        let at = Place {
+            point: Vector::new(lanes, surface.map(|surface| surface.point)),
+            normal: Vector {
+                x: Four::if_less(zero, away, -shading.x, shading.x),
+                y: Four::if_less(zero, away, -shading.y, shading.y),
+                z: Four::if_less(zero, away, -shading.z, shading.z),
+            },
+            direction,
+        };
+        let geometric = Vector::new(lanes, surface.map(|surface| surface.normal));
+        let against = direction.dot(geometric);
+        let outside = against.less(zero);
+        // As `Departure::ray` begins.
+        let error = Four::new(lanes, surface.map(|surface| surface.error));
+        let start = at.point + geometric * Four::if_less(against, zero, error, -error);
+        let materials = four.map(|hit| tracer.material(hit.found));
+        let mut bodies = [Color::BLACK; 4];
+        let mut shows = 0;
+        for (i, hit) in hits.iter().enumerate() {
+            if let Some(body) = tracer.body(hit.found, surface[i]) {
+                bodies[i] = body;
+                shows |= 1 << i;
+                colors[hit.number] = scene.ambient * body;
+            } else {
+                colors[hit.number] = Color::BLACK;
+            }
+        }
+        for (lamp, (light, cube)) in scene.lights.iter().zip(&scene.seen_by_lamp).enumerate() {
+            let Arriving { cosine, share, strength, along } = Arriving::new(light, &at);
+            let mut lit = zero.less(cosine) & zero.less(share) & shows;
+            let (cosine, share) = (cosine.to_array(), share.to_array());
+            let (strength, along) = (strength.to_array(), along.to_array());
+            if lit == 0 {
+                continue;
+            }
+            let ways = match cube {
+                Some(cube) if tracer.shadows => Some((cube, Geometry::four_towards(cube, start))),
+                _ => None,
+            };
+            while lit != 0 {
+                let i = lit.trailing_zeros() as usize & 3;
+                lit &= lit - 1;
+                let (cosine, share, strength, along) = (cosine[i], share[i], strength[i], along[i]);
+                let arriving = Arriving { cosine, share, strength, along };
+                let (hit, material) = (four[i], materials[i]);
+                let from = || {
+                    let side = if outside >> i & 1 == 1 { Side::Outside } else { Side::Inside };
+                    surface[i].departure(hit.found.object, hit.found.hit, side)
+                };
+                let mut color = light.color() * strength;
+                if let Some(queues) = queues {
+                    let gift = tracer.gift(material, bodies[i], color, &arriving);
+                    queues[lamp].push(hit.number, &from(), light.position(), gift);
+                    continue;
+                }
+                if tracer.shadows {
+                    let visible = match &ways {
+                        Some((cube, ways)) => tracer.visible(|each| {
+                            let object = hit.found.object;
+                            scene.geometry.blocked_on(cube, &ways[i], object, from, &scene.screens, each)
+                        }),
+                        None => tracer.visibility(&from(), light.position(), None),
+                    };
+                    match visible {
+                        None => continue,
+                        Some(visible) => color *= visible,
+                    }
+                }
+                tracer.gift(material, bodies[i], color, &arriving).add_to(&mut colors[hit.number]);
+            }
+        }
     }
 }
 
@@ -133,14 +285,17 @@ impl<'s> Task for Enqueue<'_, 's> {
 struct Spawn<'a, 's> {
     tracer: &'a mut Tracer<'s>,
     local: Color,
-    vertex: &'a Vertex<'s>,
+    ray: &'a Ray,
+    found: Found,
+    surface: Surface,
 }
 
 impl Task for Spawn<'_, '_> {
     type Output = Color;
     #[inline(always)]
     fn run<P: Product>(self) -> Color {
-        self.tracer.with_spawned(self.local, self.vertex, 1, 1.0)
+        let vertex = self.tracer.vertex(self.ray, self.found, self.surface);
+        self.local + self.tracer.spawned(&vertex, 1, 1.0)
     }
 }
 
@@ -163,6 +318,7 @@ impl<'s> Tracer<'s> {
             media,
             filters: Vec::new(),
             queues: scene.lights.iter().map(|_| ShadowQueue::default()).collect(),
+            surfaces: Vec::new(),
             stats: Stats::default(),
         }
     }
@@ -205,7 +361,7 @@ impl<'s> Tracer<'s> {
 
     #[inline(always)]
     fn shade_here(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
-        let vertex = self.vertex(ray, found);
+        let vertex = self.vertex(ray, found, self.scene.geometry.surface(ray, found));
         let local = self.local(&vertex);
         self.with_spawned(local, &vertex, depth, weight)
     }
@@ -214,31 +370,43 @@ impl<'s> Tracer<'s> {
     /// [`seen_by_eye`](Tracer::seen_by_eye) for each, with the shadow rays of the first hits cast together.
     pub fn all_seen_by_eye(&mut self, rays: &[Ray], all_found: &[Option<Found>], colors: &mut Vec<Color>) {
         colors.clear();
+        colors.resize(rays.len(), self.scene.background);
         // Lamps that hold what they see ask for no search, and what is behind glass is searched otherwise.
         let searched = self.scene.all_opaque && self.scene.seen_by_lamp.iter().any(Option::is_none);
-        if !(searched && self.shadows) {
-            colors.extend(rays.iter().zip(all_found).map(|(ray, found)| self.seen_by_eye(ray, *found)));
-            return;
+        let together = searched && self.shadows;
+        let count = if together { rays.len().max(1) } else { NEAR };
+        let parts = rays.chunks(count).zip(all_found.chunks(count)).zip(colors.chunks_mut(count));
+        for ((rays, found), colors) in parts {
+            self.together(rays, found, colors, together);
         }
+    }
+
+    /// Some of them, in one piece.
+    fn together(
+        &mut self,
+        rays: &[Ray],
+        all_found: &[Option<Found>],
+        colors: &mut [Color],
+        cast_together: bool,
+    ) {
+        let mut surfaces = core::mem::take(&mut self.surfaces);
+        let nowhere = Surface::new(0.0, DVec3::ZERO, DVec3::ZERO, DVec3::Y, 0.0);
+        surfaces.resize(rays.len().max(surfaces.len()), nowhere);
+        self.scene.geometry.surface_many(rays, all_found, &mut surfaces);
+        let first = |(number, found): (usize, &Option<Found>)| Some(First { number, found: (*found)? });
+        let hits: Vec<First> = all_found.iter().enumerate().filter_map(first).collect();
+        self.stats.eye_rays += rays.len() as u64;
+        self.stats.eye_hits += hits.len() as u64;
         let mut queues = core::mem::take(&mut self.queues);
-        let mut spawning = Vec::new();
-        for (number, (ray, found)) in rays.iter().zip(all_found).enumerate() {
-            self.stats.eye_rays += 1;
-            if let Some(Some(soon)) = all_found.get(number + AHEAD) {
-                self.scene.geometry.prefetch(*soon);
-            }
-            let Some(found) = *found else {
-                colors.push(self.scene.background);
-                continue;
-            };
-            self.stats.eye_hits += 1;
-            let (color, vertex) = run(Enqueue { tracer: self, ray, found, number, queues: &mut queues });
-            colors.push(color);
-            if self.spawns(&vertex, 1) {
-                spawning.push((number, vertex));
-            }
-        }
-        for queue in &mut queues {
+        vectorize(LightMany {
+            queues: cast_together.then_some(&mut queues[..]),
+            tracer: self,
+            rays,
+            surfaces: &surfaces,
+            hits: &hits,
+            colors,
+        });
+        for queue in queues.iter_mut().filter(|queue| !queue.rays.is_empty()) {
             self.stats.shadow_rays += queue.rays.len() as u64;
             queue.blocked.resize(queue.rays.len(), false);
             let ShadowQueue { rays, within, from, blocked, gifts } = queue;
@@ -253,16 +421,24 @@ impl<'s> Tracer<'s> {
             queue.clear();
         }
         self.queues = queues;
-        for (number, vertex) in spawning {
-            colors[number] = run(Spawn { tracer: self, local: colors[number], vertex: &vertex });
+        for First { number, found } in hits {
+            if self.spawns(self.material(found), 1) {
+                let (local, ray, surface) = (colors[number], &rays[number], surfaces[number]);
+                colors[number] = run(Spawn { tracer: self, local, ray, found, surface });
+            }
         }
+        self.surfaces = surfaces;
     }
 
-    /// The record of a hit.
+    /// The material of what was hit.
     #[inline(always)]
-    fn vertex(&self, ray: &Ray, found: Found) -> Vertex<'s> {
-        let scene = self.scene;
-        let surface = scene.geometry.surface(ray, found);
+    fn material(&self, found: Found) -> &'s Material {
+        &self.scene.materials[self.scene.material_of[found.object as usize] as usize]
+    }
+
+    /// A hit and all that spawned rays need.
+    #[inline(always)]
+    fn vertex(&self, ray: &Ray, found: Found, surface: Surface) -> Vertex<'s> {
         let direction = ray.direction.normalize();
         let facing = if direction.dot(surface.shading_normal) > 0.0 {
             -surface.shading_normal
@@ -274,71 +450,48 @@ impl<'s> Tracer<'s> {
             direction,
             normal: facing,
             side: Side::of_arrival(direction, surface.normal),
-            material: &scene.materials[scene.material_of[found.object as usize] as usize],
+            material: self.material(found),
             surface,
         }
     }
 
     /// Whether rays go on from a point.
     #[inline(always)]
-    fn spawns(&self, v: &Vertex, depth: u32) -> bool {
-        depth < self.max_depth && !v.material.is_matt()
+    fn spawns(&self, material: &Material, depth: u32) -> bool {
+        depth < self.max_depth && !material.is_matt()
     }
 
     /// The colour of a point whose own is known.
     #[inline(always)]
     fn with_spawned(&mut self, local: Color, v: &Vertex, depth: u32, weight: f64) -> Color {
-        if self.spawns(v, depth) { local + self.spawned(v, depth, weight) } else { local }
+        if self.spawns(v.material, depth) { local + self.spawned(v, depth, weight) } else { local }
     }
 
     /// The colour of the surface itself, before it is lit; `None` where it shows none.
     #[inline(always)]
-    fn body(&self, v: &Vertex) -> Option<Color> {
+    fn body(&self, found: Found, surface: &Surface) -> Option<Color> {
         let scene = self.scene;
-        let material = v.material;
+        let material = self.material(found);
         if material.diffuse == 0.0 && material.specular == 0.0 {
             return None;
         }
         let paint = match material.paint {
             Paint::Color(color) => color,
             Paint::Texture(texture) => {
-                let object = v.found.object;
+                let object = found.object;
                 let mapping = scene.mappings[object as usize];
-                scene.textures[texture as usize].color(&v.surface, mapping, object)
+                scene.textures[texture as usize].color(surface, mapping, object)
             }
         };
         Some(paint * material.diffuse)
     }
 
-    /// The light of a lamp at a point; `None` where it gives none, whatever is in the way.
-    #[inline(always)]
-    fn arriving(&self, v: &Vertex, light: &Light) -> Option<Arriving> {
-        let to_light = light.position() - v.surface.point;
-        let distance = to_light.length();
-        let to_light = to_light / distance;
-        let cosine = v.normal.dot(to_light);
-        // Not `<=`: a lamp at the very point has no direction, NaN, and gives nothing.
-        if !(cosine > 0.0) {
-            return None;
-        }
-        let share = light.share(-to_light);
-        if share == 0.0 {
-            return None;
-        }
-        let color = light.color() * (share * light.attenuation().at(distance));
-        Some(Arriving { to_light, cosine, color })
-    }
-
     /// What the light adds.
     #[inline(always)]
-    fn gift(&self, v: &Vertex, body: Color, arriving: &Arriving) -> Gift {
-        let Arriving { to_light, cosine, color } = *arriving;
-        let mut gift = Gift { body: color * body * cosine, gloss: None };
-        if v.material.specular > 0.0 {
-            let along = (v.normal * (2.0 * cosine) - to_light).dot(-v.direction);
-            if along > 0.0 {
-                gift.gloss = Some(color * (v.material.specular * power(along, v.material.shininess)));
-            }
+    fn gift(&self, material: &Material, body: Color, color: Color, arriving: &Arriving<f64>) -> Gift {
+        let mut gift = Gift { body: color * body * arriving.cosine, gloss: None };
+        if material.specular > 0.0 && arriving.along > 0.0 {
+            gift.gloss = Some(color * (material.specular * power(arriving.along, material.shininess)));
         }
         gift
     }
@@ -347,58 +500,68 @@ impl<'s> Tracer<'s> {
     #[inline(always)]
     fn local(&mut self, v: &Vertex) -> Color {
         let scene = self.scene;
-        let Some(body) = self.body(v) else { return Color::BLACK };
+        let Some(body) = self.body(v.found, &v.surface) else { return Color::BLACK };
         let mut sum = scene.ambient * body;
         let from = v.surface.departure(v.found.object, v.found.hit, v.side);
+        let at =
+            Place { point: v.surface.point.into(), normal: v.normal.into(), direction: v.direction.into() };
         for (light, cube) in scene.lights.iter().zip(&scene.seen_by_lamp) {
-            let Some(mut arriving) = self.arriving(v, light) else { continue };
-            if self.shadows {
-                match self.visibility(&from, light.position(), cube.as_ref()) {
-                    None => continue,
-                    Some(visible) => arriving.color *= visible,
-                }
+            let arriving = Arriving::new(light, &at);
+            if arriving.is_some() {
+                self.receive(v.material, body, &from, light, cube.as_ref(), &arriving, &mut sum);
             }
-            self.gift(v, body, &arriving).add_to(&mut sum);
         }
         sum
     }
 
-    /// The same with the light of the lamps still to come.
+    /// Adds the light of a lamp, unless something is in the way.
     #[inline(always)]
-    fn enqueue(&self, v: &Vertex, number: usize, queues: &mut [ShadowQueue]) -> Color {
-        let scene = self.scene;
-        let Some(body) = self.body(v) else { return Color::BLACK };
-        let from = v.surface.departure(v.found.object, v.found.hit, v.side);
-        for (light, queue) in scene.lights.iter().zip(queues) {
-            let Some(arriving) = self.arriving(v, light) else { continue };
-            let (ray, within) = shadow_ray(&from, light.position());
-            queue.rays.push(ray);
-            queue.within.push(within);
-            queue.from.push(from);
-            queue.gifts.push((number, self.gift(v, body, &arriving)));
+    #[allow(clippy::too_many_arguments)]
+    fn receive(
+        &mut self,
+        material: &Material,
+        body: Color,
+        from: &Departure,
+        light: &Light,
+        cube: Option<&DirectionCube>,
+        arriving: &Arriving<f64>,
+        sum: &mut Color,
+    ) {
+        let mut color = light.color() * arriving.strength;
+        if self.shadows {
+            match self.visibility(from, light.position(), cube) {
+                None => return,
+                Some(visible) => color *= visible,
+            }
         }
-        scene.ambient * body
+        self.gift(material, body, color, arriving).add_to(sum);
     }
 
     /// What a straight ray to a lamp leaves of its light; `None` when something opaque is in the way.
     #[inline(always)]
     fn visibility(&mut self, from: &Departure, lamp: DVec3, cube: Option<&DirectionCube>) -> Option<Color> {
+        let scene = self.scene;
+        self.visible(|each| match cube {
+            Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, each),
+            None => {
+                let (ray, within) = shadow_ray(from, lamp);
+                match scene.all_opaque {
+                    true => scene.geometry.occluded_leaving(&ray, within, from),
+                    false => scene.geometry.blocked(&ray, within, Some(from), &scene.screens, each),
+                }
+            }
+        })
+    }
+
+    /// The same, by a search that reports what is crossed and answers whether anything opaque is in the way.
+    #[inline(always)]
+    fn visible(&mut self, blocked: impl FnOnce(&mut dyn FnMut(Found)) -> bool) -> Option<Color> {
         self.stats.shadow_rays += 1;
         let scene = self.scene;
         let filters = &mut self.filters;
         filters.clear();
         let transmit = |object: u32| scene.materials[scene.material_of[object as usize] as usize].transmit;
-        let mut each = |found: Found| filters.push(transmit(found.object));
-        let blocked = match cube {
-            Some(cube) => scene.geometry.blocked_towards(cube, from, &scene.screens, &mut each),
-            None => {
-                let (ray, within) = shadow_ray(from, lamp);
-                match scene.all_opaque {
-                    true => scene.geometry.occluded_leaving(&ray, within, from),
-                    false => scene.geometry.blocked(&ray, within, Some(from), &scene.screens, &mut each),
-                }
-            }
-        };
+        let blocked = blocked(&mut |found| filters.push(transmit(found.object)));
         if blocked {
             self.stats.shadow_hits += 1;
             return None;

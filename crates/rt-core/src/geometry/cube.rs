@@ -16,10 +16,11 @@
 //! `2^-10 S` and of the object's size; with a depth of at least 2^-20 S on the face that is far less than the margin, and
 //! where a corner is less deep, the box alone counts.
 
-use super::frame::Windows;
+use super::frame::{Window, Windows};
 use super::outline::{Face, Outline};
 use super::query::{Nearest, Path, Query, Screen};
 use super::{Found, Geometry, frame, is_legal};
+use crate::kernel::{Four, Lanes, Real, Vector, Vectorized, vectorize};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{largest, moderate};
 use crate::{Departure, Interval, Primitive, Ray, Shape};
@@ -74,6 +75,40 @@ impl DirectionCube {
         let place = |x: f64| ((x * scale + 0.5 * EDGE as f64) as usize).min(EDGE - 1);
         let face = 2 * axis + usize::from(depth < 0.0);
         self.squares.get((face * EDGE + place(b)) * EDGE + place(a)).copied().unwrap_or(u64::MAX)
+    }
+
+    /// The objects in each of four directions.
+    #[inline(always)]
+    fn seen_four<L: Lanes>(&self, d: Vector<Four<L>>) -> [u64; 4] {
+        let (zero, half) = (d.x.all(0.0), d.x.all(0.5 * EDGE as f64));
+        let (x, y, z) = (d.x.abs(), d.y.abs(), d.z.abs());
+        // Of y and z; then of these and x.
+        let first = Four::if_at_most(z, y, zero.all(2.0), zero.all(4.0));
+        let size = Four::if_at_most(z, y, y, z);
+        let depth = Four::if_at_most(z, y, d.y, d.z);
+        let a = Four::if_at_most(z, y, d.z, d.x);
+        let b = Four::if_at_most(z, y, d.x, d.y);
+        let first = Four::if_at_most(size, x, zero, first);
+        let depth = Four::if_at_most(size, x, d.x, depth);
+        let a = Four::if_at_most(size, x, d.y, a);
+        let b = Four::if_at_most(size, x, d.z, b);
+        let face = Four::if_less(depth, zero, first + zero.all(1.0), first);
+        let scale = half / depth.abs();
+        let plain = scale.less(zero.all(f64::INFINITY));
+        let last = zero.all((EDGE - 1) as f64);
+        let (a, b) = (a * scale + half, b * scale + half);
+        let (a, b) = (Four::if_less(a, last, a, last), Four::if_less(b, last, b, last));
+        let (face, a, b) = (face.whole(), a.whole(), b.whole());
+        let mut seen = [u64::MAX; 4];
+        for i in 0..4 {
+            let edge = EDGE as u32;
+            if plain >> i & 1 == 1
+                && let Some(&objects) = self.squares.get(((face[i] * edge + b[i]) * edge + a[i]) as usize)
+            {
+                seen[i] = objects;
+            }
+        }
+        seen
     }
 
     /// Whether the ray is one of those that this is for, but for its passing the point.
@@ -218,11 +253,7 @@ impl Geometry {
         within: &[Interval],
         found: &mut [Option<Found>],
     ) {
-        // An answer goes from registers to its place. Returned by a call it would be written in three parts and read
-        // back as two, which waits for all three.
-        for ((ray, within), found) in rays.iter().zip(within).zip(found) {
-            *found = self.seen_from(cube, ray, *within);
-        }
+        vectorize(SeenMany { geometry: self, cube, rays, within, found });
     }
 
     #[inline(always)]
@@ -234,11 +265,24 @@ impl Geometry {
         if !is_legal(ray, within) {
             return None;
         }
-        let mut nearest = Nearest::new(within, cube.windows.of(ray.direction), None);
-        // The length of the direction: the margin of the distances covers its rounding, unless squares leave their range.
         let square = ray.direction.dot(ray.direction);
         let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
-        let mut rest = cube.seen(ray.direction);
+        self.nearest_seen(cube, ray, within, cube.windows.of(ray.direction), length, cube.seen(ray.direction))
+    }
+
+    /// The nearest of the objects that a ray may meet. The margin of the distances covers the rounding of the direction's
+    /// length, which is infinite where squares leave their range.
+    #[inline(always)]
+    fn nearest_seen(
+        &self,
+        cube: &DirectionCube,
+        ray: &Ray,
+        within: Interval,
+        window: Window,
+        length: f64,
+        mut rest: u64,
+    ) -> Option<Found> {
+        let mut nearest = Nearest::new(within, window, None);
         while rest != 0 {
             let place = rest.trailing_zeros() as usize;
             rest &= rest - 1;
@@ -272,24 +316,63 @@ impl Geometry {
     ) -> bool {
         let start = from.ray(DVec3::ZERO).0.origin;
         let ray = Ray::new(start, cube.point - start);
+        let way = Way {
+            held: cube.holds(&ray),
+            valid: ray.is_valid(),
+            length: sqrt(ray.direction.dot(ray.direction)),
+            seen: cube.seen(-ray.direction),
+            ray,
+        };
+        self.blocked_on(cube, &way, from.object, || *from, screens, each)
+    }
+
+    /// The ways of [`blocked_towards`](Geometry::blocked_towards) from four places, for [`blocked_on`](Geometry::blocked_on).
+    #[inline(always)]
+    pub fn four_towards<L: Lanes>(cube: &DirectionCube, start: Vector<Four<L>>) -> [Way; 4] {
+        let zero = start.x.all(0.0);
+        let direction = Vector::all(zero, cube.point) - start;
+        // Zero times a number is zero, unless the number is infinite or NaN, which then the direction is too.
+        let nothing = direction.x * zero + direction.y * zero + direction.z * zero;
+        let valid = zero.less(direction.largest()) & nothing.less(zero.all(1.0));
+        let beyond = zero.all(cube.reach).less(start.largest());
+        let length = direction.length().to_array();
+        let seen = cube.seen_four(-direction);
+        let (start, direction) = (start.to_array(), direction.to_array());
+        core::array::from_fn(|i| Way {
+            ray: Ray { origin: start[i], direction: direction[i] },
+            held: beyond >> i & 1 == 0,
+            valid: valid >> i & 1 == 1,
+            length: length[i],
+            seen: seen[i],
+        })
+    }
+
+    /// The rest of [`blocked_towards`](Geometry::blocked_towards) for a ray that leaves `object`.
+    #[inline(always)]
+    pub fn blocked_on(
+        &self,
+        cube: &DirectionCube,
+        way: &Way,
+        object: u32,
+        from: impl Fn() -> Departure,
+        screens: &[Screen],
+        each: &mut dyn FnMut(Found),
+    ) -> bool {
+        let Way { ref ray, held, valid, length, seen } = *way;
         let within = Interval::new(0.0, 1.0);
-        if !cube.holds(&ray) {
-            return self.blocked(&ray, within, Some(from), screens, each);
+        if !held {
+            return self.blocked(ray, within, Some(&from()), screens, each);
         }
-        if !is_legal(&ray, within) {
+        if !valid {
             return false;
         }
         let mut path = Path { within, skip: None, screens, each, blocked: false };
-        if path.leave(self, &ray, from).is_break() {
+        if path.leave(self, ray, object, from).is_break() {
             return true;
         }
-        let left = cube.bits.get(from.object as usize).copied().unwrap_or(0);
-        let mut rest = cube.seen(-ray.direction) & !left;
-        if rest == 0 {
-            return false;
-        }
+        let left = cube.bits.get(object as usize).copied().unwrap_or(0);
+        let mut rest = seen & !left;
         // Objects beyond the start are not in the way. The margin covers the roundings of the distance, as it is relative.
-        let length = sqrt(ray.direction.dot(ray.direction));
         while rest != 0 {
             let place = rest.trailing_zeros() as usize;
             rest &= rest - 1;
@@ -301,7 +384,7 @@ impl Geometry {
                 break;
             }
             if let Some(shape) = self.shapes.get(object as usize)
-                && path.visit(&ray, object, shape).is_break()
+                && path.visit(ray, object, shape).is_break()
             {
                 break;
             }
@@ -310,10 +393,73 @@ impl Geometry {
     }
 }
 
+/// The ray from a place to the point of a [`DirectionCube`], and what the cube says of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    ray: Ray,
+    /// Whether it begins within the reach of the cube.
+    held: bool,
+    valid: bool,
+    length: f64,
+    /// The objects in the direction of the place, one bit each.
+    seen: u64,
+}
+
+/// Rays that begin at the point of a cube, four at a time.
+struct SeenMany<'a> {
+    geometry: &'a Geometry,
+    cube: &'a DirectionCube,
+    rays: &'a [Ray],
+    within: &'a [Interval],
+    found: &'a mut [Option<Found>],
+}
+
+impl Vectorized for SeenMany<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let SeenMany { geometry, cube, rays, within, found } = self;
+        let fours = rays.chunks(4).zip(within.chunks(4)).zip(found.chunks_mut(4));
+        for ((rays, within), found) in fours {
+            let here = |ray: &Ray| ray.origin == cube.point;
+            let ([a, b, c, d], true) = (rays, rays.iter().all(here)) else {
+                for ((ray, within), found) in rays.iter().zip(within).zip(found) {
+                    *found = geometry.seen_from(cube, ray, *within);
+                }
+                continue;
+            };
+            let direction = Vector::new(lanes, [a.direction, b.direction, c.direction, d.direction]);
+            let zero = direction.x.all(0.0);
+            let largest = direction.largest();
+            // Zero times a number is zero, unless the number is infinite or NaN. The point is finite.
+            let nothing = direction.x * zero + direction.y * zero + direction.z * zero;
+            let valid = zero.less(largest) & nothing.less(zero.all(1.0));
+            let windows = cube.windows.of_four(largest);
+            let square = direction.dot(direction);
+            let length = square.sqrt().to_array();
+            let (square, seen) = (square.to_array(), cube.seen_four(direction));
+            // An answer goes from registers to its place. Returned by a call it would be written in three parts and read
+            // back as two, which waits for all three.
+            for (i, ((ray, within), found)) in rays.iter().zip(within).zip(found).enumerate() {
+                *found = None;
+                if valid >> i & 1 == 1 && within.min >= 0.0 && within.min < within.max {
+                    let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
+                    *found = geometry.nearest_seen(cube, ray, *within, windows[i], length, seen[i]);
+                } else if !(within.min >= 0.0) {
+                    *found = geometry.nearest(ray, *within);
+                }
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Sphere, Torus};
+    use crate::Side;
+    use crate::kernel::PortableLanes;
+    use crate::shape::{Plane, Sphere, Torus};
+    use crate::testing::Random;
 
     /// An object is entered in all squares that it is seen in, and in few more.
     #[test]
@@ -375,5 +521,110 @@ mod tests {
             let from = |x: f64| crate::Ray::new([x * scale, 0.0, 0.0], [1.0, 0.0, 0.0]);
             assert!(cube.holds(&from(3.0 * 1023.0)) && !cube.holds(&from(3.0 * 1025.0)));
         }
+    }
+
+    /// A few shapes, of which a plane, about the middle.
+    fn scene() -> Geometry {
+        let mut builder = Geometry::builder().add(Plane::new([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]).unwrap());
+        for i in 0..20 {
+            let x = f64::from(i);
+            let way = DVec3::new(libm::sin(x), libm::cos(1.7 * x), libm::sin(2.3 * x + 1.0)).normalize();
+            builder = match i % 2 {
+                0 => builder.add(Sphere::new(way * 3.0, 0.2 + 0.02 * x).unwrap()),
+                _ => builder.add(Torus::new(way * 4.0, way, 0.9, 0.2).unwrap()),
+            };
+        }
+        builder.build()
+    }
+
+    /// Ordinary numbers, and now and then one of the others.
+    fn odd(random: &mut Random, ordinary: f64) -> f64 {
+        const ODD: [f64; 10] =
+            [0.0, -0.0, 1e-320, -1e-160, 1e160, exp2i(1000), f64::MAX, f64::INFINITY, f64::NAN, 1.0];
+        match random.uniform(0.0, 12.0) as usize {
+            0 => ODD[random.uniform(0.0, 10.0) as usize % 10],
+            _ => ordinary,
+        }
+    }
+
+    /// Rays by four find what they find one by one, in all lanes and whatever their bits.
+    #[test]
+    fn many_are_each() {
+        let mut random = Random::new(1);
+        let geometry = scene();
+        let point = DVec3::new(0.25, -0.5, 0.125);
+        let cube = geometry.cube_about(point).unwrap();
+        let mut hits = 0;
+        for _ in 0..2000 {
+            let mut ray = || {
+                let d = random.direction() * random.magnitude(-3.0, 3.0);
+                let d = DVec3::new(odd(&mut random, d.x), odd(&mut random, d.y), odd(&mut random, d.z));
+                Ray::new(DVec3::new(odd(&mut random, point.x), point.y, point.z), d)
+            };
+            let rays: [Ray; 7] = core::array::from_fn(|_| ray());
+            let within =
+                [0; 7].map(|_| Interval::new(odd(&mut random, 0.0), odd(&mut random, f64::INFINITY)));
+            let (mut found, mut portable) = ([None; 7], [None; 7]);
+            geometry.nearest_from_many(&cube, &rays, &within, &mut found);
+            let (rays_, within_) = (&rays, &within);
+            SeenMany { geometry: &geometry, cube: &cube, rays: rays_, within: within_, found: &mut portable }
+                .run(PortableLanes);
+            for (i, (ray, within)) in rays.iter().zip(within).enumerate() {
+                let expected = geometry.nearest(ray, within);
+                hits += u32::from(expected.is_some());
+                for found in [found[i], portable[i], geometry.nearest_from(&cube, ray, within)] {
+                    assert_eq!(found, expected, "{ray:?} {within:?}");
+                }
+            }
+        }
+        assert!(hits > 3000, "{hits}");
+    }
+
+    struct Blocked<'a>(&'a Geometry, &'a DirectionCube, [Departure; 4]);
+
+    impl Vectorized for Blocked<'_> {
+        type Output = [bool; 4];
+        #[inline(always)]
+        fn run<L: Lanes>(self, lanes: L) -> [bool; 4] {
+            let Blocked(geometry, cube, from) = self;
+            let start = Vector::new(lanes, from.map(|from| from.ray(DVec3::ZERO).0.origin));
+            let ways = Geometry::four_towards(cube, start);
+            core::array::from_fn(|i| {
+                geometry.blocked_on(cube, &ways[i], from[i].object, || from[i], &[], &mut |_| {})
+            })
+        }
+    }
+
+    /// Shadow rays by four are blocked where they are one by one.
+    #[test]
+    fn four_are_each_towards_a_point() {
+        let mut random = Random::new(2);
+        let geometry = scene();
+        let point = DVec3::new(0.25, 0.5, 0.125);
+        let cube = geometry.cube_about(point).unwrap();
+        let mut blocked = 0;
+        for _ in 0..2000 {
+            let from = [0; 4].map(|_| {
+                loop {
+                    let ray = Ray::new(random.in_cube() * 9.0, random.direction());
+                    let Some(found) = geometry.nearest(&ray, Interval::FORWARD) else { continue };
+                    let surface = geometry.surface(&ray, found);
+                    let side = Side::of_arrival(ray.direction, surface.normal);
+                    let mut from = surface.departure(found.object, found.hit, side);
+                    from.point.y = odd(&mut random, from.point.y);
+                    break from;
+                }
+            });
+            let found = vectorize(Blocked(&geometry, &cube, from));
+            assert_eq!(found, Blocked(&geometry, &cube, from).run(PortableLanes));
+            for (from, found) in from.iter().zip(found) {
+                assert_eq!(found, geometry.blocked_towards(&cube, from, &[], &mut |_| {}), "{from:?}");
+                let start = from.ray(DVec3::ZERO).0.origin;
+                let (ray, within) = (Ray::new(start, point - start), Interval::new(0.0, 1.0));
+                assert_eq!(found, geometry.occluded_leaving(&ray, within, from), "{from:?}");
+                blocked += u32::from(found);
+            }
+        }
+        assert!((500..7500).contains(&blocked), "{blocked}");
     }
 }

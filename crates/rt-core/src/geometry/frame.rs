@@ -5,7 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
-use crate::kernel::{Lanes, at_least, round_down, round_up};
+use crate::kernel::{Four, Lanes, Real, at_least, round_down, round_up};
 use crate::math::{exp2i, exponent};
 use crate::scaled::largest;
 use crate::{Aabb, Interval, Ray};
@@ -93,6 +93,22 @@ impl Windows {
             }
             _ => Window { absolute: 0.0 },
         }
+    }
+
+    /// The windows of four rays, by the largest coordinates of their directions.
+    #[inline(always)]
+    pub fn of_four<L: Lanes>(&self, largest: Four<L>) -> [Window; 4] {
+        let zero = largest.all(0.0);
+        let Some(far) = self.far else { return [Window { absolute: 0.0 }; 4] };
+        let (least, most) = (zero.all(exp2i(-1000)), zero.all(exp2i(1000)));
+        // Powers of two: all of this is exact. What is not middling is left out at the end.
+        let binade = largest.binade();
+        let power = zero.all(exp2i(self.exponent)) / binade;
+        let far = Four::if_at_most(least, power, zero.all(far) * power, zero);
+        let far = Four::if_at_most(power, most, far, zero);
+        let far = Four::if_at_most(least, binade, far, zero);
+        let far = Four::if_at_most(binade, most, far, zero);
+        far.to_array().map(|absolute| Window { absolute })
     }
 }
 
@@ -420,6 +436,9 @@ mod tests {
             assert_eq!(local.shift.is_finite(), followed, "{size:e} {speed:e}");
             assert_eq!(window.absolute > 0.0, followed);
             assert_eq!(frame.windows(ray.origin).of(ray.direction).absolute, window.absolute);
+            let largest = Four::new(crate::kernel::PortableLanes, [1.0, largest(ray.direction), 0.0, speed]);
+            let four = frame.windows(ray.origin).of_four(largest).map(|window| window.absolute);
+            assert_eq!((four[1], four[2], four[3]), (window.absolute, 0.0, window.absolute));
             assert!(!followed || local.direction == DVec3::new(0.0, 0.25, 1.0));
         }
     }

@@ -20,6 +20,7 @@ mod order;
 mod outline;
 mod packet;
 mod query;
+mod record;
 mod store;
 mod stream;
 mod traverse;
@@ -30,7 +31,7 @@ use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
 use core::ops::ControlFlow;
-pub use cube::DirectionCube;
+pub use cube::{DirectionCube, Way};
 use frame::{Frame, LocalRay};
 pub use query::Screen;
 use query::{Any, Contest, Crossings, Nearest, Path, Query};
@@ -374,7 +375,7 @@ impl Vectorized for FindPath<'_> {
             return false;
         }
         if let Some(from) = from
-            && path.leave(geometry, ray, from).is_break()
+            && path.leave(geometry, ray, from.object, || *from).is_break()
         {
             return true;
         }

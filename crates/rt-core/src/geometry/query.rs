@@ -2,7 +2,7 @@
 
 use super::frame::Window;
 use super::{Found, Geometry};
-use crate::{Departure, Hit, Interval, Primitive, Ray};
+use crate::{Departure, Hit, Interval, Primitive, Ray, Shape};
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 
@@ -197,9 +197,20 @@ impl Path<'_> {
 
     /// Shows it the shape that the ray leaves.
     #[inline(always)]
-    pub fn leave(&mut self, geometry: &Geometry, ray: &Ray, from: &Departure) -> ControlFlow<()> {
-        let (object, within) = (from.object, self.within);
+    pub fn leave(
+        &mut self,
+        geometry: &Geometry,
+        ray: &Ray,
+        object: u32,
+        from: impl FnOnce() -> Departure,
+    ) -> ControlFlow<()> {
+        let within = self.within;
         let Some(shape) = geometry.shapes.get(object as usize) else { return ControlFlow::Continue(()) };
+        // No ray comes back to a plane: most need not say where they leave.
+        if let Shape::Plane(_) = shape {
+            return ControlFlow::Continue(());
+        }
+        let from = &from();
         match self.screen(object) {
             Screen::Opaque if shape.hit_leaving(ray, within, from).is_some() => {
                 self.blocked = true;

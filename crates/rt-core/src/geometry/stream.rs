@@ -87,8 +87,14 @@ pub(super) fn interleave<'a, const N: usize, L: Lanes, Q: Query>(
     mut next: impl FnMut() -> Option<(usize, &'a Ray, LocalRay, Q)>,
     mut done: impl FnMut(usize, Q),
 ) {
-    let mut flights: [Option<Flight<L, Q>>; N] =
-        core::array::from_fn(|_| next().map(|start| Flight::new(lanes, start)));
+    let mut flights = [const { None::<Flight<L, Q>> }; N];
+    // Not by closures handed on: see `SlabRay::new`.
+    for slot in &mut flights {
+        match next() {
+            Some(start) => *slot = Some(Flight::new(lanes, start)),
+            None => break,
+        }
+    }
     let mut busy = true;
     while busy {
         busy = false;
@@ -99,7 +105,9 @@ pub(super) fn interleave<'a, const N: usize, L: Lanes, Q: Query>(
                     if let Some(Flight { number, query, .. }) = slot.take() {
                         done(number, query);
                     }
-                    *slot = next().map(|start| Flight::new(lanes, start));
+                    if let Some(start) = next() {
+                        *slot = Some(Flight::new(lanes, start));
+                    }
                 }
             }
         }

@@ -153,6 +153,32 @@ impl Lanes for Avx2Lanes {
         unsafe { _mm256_div_pd(a, b) }
     }
     #[inline(always)]
+    fn neg4(self, a: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_xor_pd(_mm256_set1_pd(-0.0), a) }
+    }
+    #[inline(always)]
+    fn sqrt4(self, a: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_sqrt_pd(a) }
+    }
+    #[inline(always)]
+    fn two_product4(self, a: __m256d, b: __m256d) -> (__m256d, __m256d) {
+        let p = self.mul4(a, b);
+        // SAFETY: `self` proves FMA.
+        (p, unsafe { _mm256_fmsub_pd(a, b, p) })
+    }
+    #[inline(always)]
+    fn if_less4(self, a: __m256d, b: __m256d, then: __m256d, otherwise: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_blendv_pd(otherwise, then, _mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) }
+    }
+    #[inline(always)]
+    fn if_at_most4(self, a: __m256d, b: __m256d, then: __m256d, otherwise: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_blendv_pd(otherwise, then, _mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) }
+    }
+    #[inline(always)]
     fn max4(self, a: __m256d, b: __m256d) -> __m256d {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_max_pd(a, b) }
@@ -166,6 +192,13 @@ impl Lanes for Avx2Lanes {
     fn binade4(self, a: __m256d) -> __m256d {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_and_pd(a, _mm256_set1_pd(f64::from_bits(EXPONENT))) }
+    }
+    #[inline(always)]
+    fn whole4(self, a: __m256d) -> [u32; 4] {
+        let mut to = [0; 4];
+        // SAFETY: `self` proves AVX2; the pointer comes from an array of four u32.
+        unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), _mm256_cvttpd_epi32(a)) };
+        to
     }
     #[inline(always)]
     fn le4(self, a: __m256d, b: __m256d) -> u32 {

@@ -126,40 +126,38 @@ impl<L: Lanes> SlabRay<L> {
     pub fn new(lanes: L, origin: DVec3, error: DVec3, direction: DVec3) -> Self {
         const LEAST: f64 = crate::math::exp2i(-100);
         const SLACK: f64 = crate::math::exp2i(-22);
-        let four = |v: DVec3| [v.x, v.y, v.z, 1.0];
-        let (o, e) = (four(origin), four(error));
-        let d = four(direction).map(|d| (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d));
-        let inverse = d.map(|d| 1.0 / d);
-        let near = inverse.map(|r| (r * (1.0 - SLACK)) as f32);
-        let far = inverse.map(|r| (r * (1.0 + SLACK)) as f32);
-        let step = |x: f64| x.abs() * STEP;
-        let (near_offset, far_offset): ([f32; 4], [f32; 4]) = if L::FUSED {
-            // An offset is subtracted: a greater one makes the parameter smaller.
-            let near_offset = core::array::from_fn(|i| {
-                let (factor, size) = (f64::from(near[i]), f64::from(near[i].abs()));
-                (o[i] * factor + (e[i] * size + step(o[i] * factor))) as f32
-            });
-            let far_offset = core::array::from_fn(|i| {
-                let (factor, size) = (f64::from(far[i]), f64::from(far[i].abs()));
-                (o[i] * factor - (e[i] * size + step(o[i] * factor))) as f32
-            });
-            (near_offset, far_offset)
-        } else {
-            // Forward, the origin counts as further on for the entry and as further back for the exit.
-            let outward = |i: usize| (e[i] + step(o[i])).copysign(d[i]);
-            (
-                core::array::from_fn(|i| (o[i] + outward(i)) as f32),
-                core::array::from_fn(|i| (o[i] - outward(i)) as f32),
-            )
+        let (o, e) = (origin.to_array(), error.to_array());
+        // No closure makes a register: functions that take closures are compiled without the instruction set where they are
+        // not inlined.
+        let axis = |i: usize| {
+            let (o, e, d) = (o[i], e[i], direction[i]);
+            let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
+            let inverse = 1.0 / d;
+            let (near, far) = ((inverse * (1.0 - SLACK)) as f32, (inverse * (1.0 + SLACK)) as f32);
+            let step = |x: f64| x.abs() * STEP;
+            let (near_offset, far_offset) = if L::FUSED {
+                // An offset is subtracted: a greater one makes the parameter smaller.
+                let (first, last) = (f64::from(near), f64::from(far));
+                (
+                    (o * first + (e * first.abs() + step(o * first))) as f32,
+                    (o * last - (e * last.abs() + step(o * last))) as f32,
+                )
+            } else {
+                // Forward, the origin counts as further on for the entry and as further back for the exit.
+                let outward = (e + step(o)).copysign(d);
+                ((o + outward) as f32, (o - outward) as f32)
+            };
+            let row = |least: bool| if least { Row::min(i) } else { Row::max(i) };
+            (row(d > 0.0), row(d < 0.0), near, near_offset, far, far_offset)
         };
-        let row = |axis: usize, least: bool| if least { Row::min(axis) } else { Row::max(axis) };
+        let (x, y, z) = (axis(0), axis(1), axis(2));
         SlabRay {
-            near: core::array::from_fn(|axis| row(axis, d[axis] > 0.0)),
-            far: core::array::from_fn(|axis| row(axis, d[axis] < 0.0)),
-            near_factor: core::array::from_fn(|axis| lanes.splat(near[axis])),
-            near_offset: core::array::from_fn(|axis| lanes.splat(near_offset[axis])),
-            far_factor: core::array::from_fn(|axis| lanes.splat(far[axis])),
-            far_offset: core::array::from_fn(|axis| lanes.splat(far_offset[axis])),
+            near: [x.0, y.0, z.0],
+            far: [x.1, y.1, z.1],
+            near_factor: [lanes.splat(x.2), lanes.splat(y.2), lanes.splat(z.2)],
+            near_offset: [lanes.splat(x.3), lanes.splat(y.3), lanes.splat(z.3)],
+            far_factor: [lanes.splat(x.4), lanes.splat(y.4), lanes.splat(z.4)],
+            far_offset: [lanes.splat(x.5), lanes.splat(y.5), lanes.splat(z.5)],
         }
     }
 

@@ -1,5 +1,8 @@
 //! Eight `f32` lanes: the arithmetic of box tests, once portable and once for AVX2.
 
+use super::{Dekker, Product};
+use crate::math::sqrt;
+
 /// The operations of a box test on eight `f32` at once.
 ///
 /// A value of an implementing type is the proof that the machine has the instructions: it can only be had inside
@@ -57,12 +60,24 @@ pub trait Lanes: Copy {
     fn mul4(self, a: Self::D, b: Self::D) -> Self::D;
     /// `a / b`.
     fn div4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `-a`.
+    fn neg4(self, a: Self::D) -> Self::D;
+    /// The square root, correctly rounded.
+    fn sqrt4(self, a: Self::D) -> Self::D;
+    /// The product and what its rounding left: [`Product::two_product`](super::Product::two_product).
+    fn two_product4(self, a: Self::D, b: Self::D) -> (Self::D, Self::D);
+    /// `if a < b { then } else { otherwise }`.
+    fn if_less4(self, a: Self::D, b: Self::D, then: Self::D, otherwise: Self::D) -> Self::D;
+    /// `if a <= b { then } else { otherwise }`.
+    fn if_at_most4(self, a: Self::D, b: Self::D, then: Self::D, otherwise: Self::D) -> Self::D;
     /// `|a|`.
     fn abs4(self, a: Self::D) -> Self::D;
     /// `if a > b { a } else { b }`: `b` when either is NaN.
     fn max4(self, a: Self::D, b: Self::D) -> Self::D;
     /// The power of two with the exponent of `a`, which is positive: 0 for subnormal numbers, infinite for NaN.
     fn binade4(self, a: Self::D) -> Self::D;
+    /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
+    fn whole4(self, a: Self::D) -> [u32; 4];
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le4(self, a: Self::D, b: Self::D) -> u32;
     /// The lanes in which `a < b`, one bit each, lane 0 the lowest.
@@ -200,12 +215,36 @@ impl Lanes for PortableLanes {
         a.map(f64::abs)
     }
     #[inline(always)]
+    fn neg4(self, a: [f64; 4]) -> [f64; 4] {
+        a.map(|a| -a)
+    }
+    #[inline(always)]
+    fn sqrt4(self, a: [f64; 4]) -> [f64; 4] {
+        a.map(sqrt)
+    }
+    #[inline(always)]
+    fn two_product4(self, a: [f64; 4], b: [f64; 4]) -> ([f64; 4], [f64; 4]) {
+        (self.mul4(a, b), each4(a, b, |a, b| Dekker::two_product(a, b).1))
+    }
+    #[inline(always)]
+    fn if_less4(self, a: [f64; 4], b: [f64; 4], then: [f64; 4], otherwise: [f64; 4]) -> [f64; 4] {
+        core::array::from_fn(|i| if a[i] < b[i] { then[i] } else { otherwise[i] })
+    }
+    #[inline(always)]
+    fn if_at_most4(self, a: [f64; 4], b: [f64; 4], then: [f64; 4], otherwise: [f64; 4]) -> [f64; 4] {
+        core::array::from_fn(|i| if a[i] <= b[i] { then[i] } else { otherwise[i] })
+    }
+    #[inline(always)]
     fn max4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
         each4(a, b, |a, b| if a > b { a } else { b })
     }
     #[inline(always)]
     fn binade4(self, a: [f64; 4]) -> [f64; 4] {
         a.map(|a| f64::from_bits(a.to_bits() & EXPONENT))
+    }
+    #[inline(always)]
+    fn whole4(self, a: [f64; 4]) -> [u32; 4] {
+        a.map(|a| a as u32)
     }
     #[inline(always)]
     fn le4(self, a: [f64; 4], b: [f64; 4]) -> u32 {

@@ -14,6 +14,7 @@ mod level;
 mod memory;
 mod packet;
 mod pair;
+mod real;
 mod stack;
 mod task;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use level::{Level, level, set_level};
 pub(crate) use memory::{prefetch, vec_on_large_pages};
 pub use packet::{Beam, BeamShape, EightRays};
 pub use pair::{Pair, Pairs};
+pub use real::{Four, Real, Vector};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
 

@@ -50,11 +50,24 @@ impl Vectorized for Everything {
                 lanes.abs4(a),
                 lanes.max4(a, b),
                 lanes.binade4(lanes.abs4(b)),
+                lanes.neg4(a),
+                lanes.sqrt4(b),
+                lanes.if_less4(a, b, c, a),
+                lanes.if_at_most4(a, b, c, b),
+                lanes.if_at_most4(a, a, c, b),
             ] {
                 exact.extend(lanes.store4(x).map(bits));
                 exact.extend(lanes.round4(x).map(|x| bits(x.into())));
             }
             exact.extend([lanes.le4(a, b), lanes.lt4(a, b)].map(u64::from));
+            // Where the products are exact, and the numbers have such whole parts.
+            let tame = |x: f64| if (1e-100..1e100).contains(&x.abs()) { x } else { 1.0 / 3.0 };
+            let (a, b) = (four(0).map(tame), four(6).map(tame));
+            let (p, e) = lanes.two_product4(lanes.load4(a), lanes.load4(b));
+            exact.extend(lanes.store4(p).into_iter().chain(lanes.store4(e)).map(bits));
+            let small = a.map(|x| x.abs() % 2_147_483_648.0);
+            exact.extend(lanes.whole4(lanes.load4(small)).map(u64::from));
+            assert_eq!(lanes.whole4(lanes.load4(small)), small.map(|x| x as u32));
         }
         (exact, nearly)
     }

@@ -540,7 +540,8 @@ impl Piece for Face<'_> {
                 (flat::clamped(at.point(self.plane().anchor), *min, *max), local, local)
             }
             Some(turn) => {
-                let along = |axis: DVec3| meeting::dot::<P>(&at.local, &flat::doubles(axis), 0.0).0.to_f64();
+                let along =
+                    |axis: DVec3| meeting::dot::<P, f64>(&at.local, &flat::doubles(axis), 0.0).0.to_f64();
                 let [x, y, z] = turn.axes;
                 let own = DVec3::new(along(x), along(y), along(z)) * exp2i(at.power);
                 (at.point(turn.corner), at.local(), on_face(own))

@@ -313,7 +313,7 @@ pub(super) fn plane_axes(normal: DVec3) -> (DVec3, DVec3) {
 
 /// The exact cross product.
 #[inline(always)]
-pub(super) fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
+pub(crate) fn cross<P: Product>(a: &[Double; 3], b: &[Double; 3]) -> [Expansion; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(j, k)| {
         let mut sum = Expansion::ZERO;
         sum.add_double_product::<P>(a[j], b[k]);

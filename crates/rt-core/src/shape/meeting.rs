@@ -6,12 +6,12 @@
 //! Where that is too large they are exact sums. Rays that leave a middle range of numbers are scaled by powers of two
 //! first, so neither 1e-150 nor 1e150 loses a digit.
 
-use super::flat::{U, cross, doubles, power_of, prescaled};
+use super::flat::{U, cross, power_of, prescaled};
 use crate::double::{Double, fast_two_sum, two_difference, two_sum};
 use crate::expansion::Expansion;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Dekker, Four, Lanes, Product, Real, Task, Vector, run};
 use crate::math::exp2i;
-use crate::scaled::{largest, times_power};
+use crate::scaled::times_power;
 use crate::{Hit, Ray, Surface};
 use glam::{DVec2, DVec3};
 
@@ -29,64 +29,109 @@ pub(super) struct ExactPlane {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(super) struct Meeting<R = f64> {
     /// The parameter, correctly rounded.
-    pub(super) t: f64,
+    pub(super) t: R,
     /// The point minus the anchor, in units of `2^power`.
-    pub(super) local: [Double; 3],
+    pub(super) local: [Double<R>; 3],
     /// The unit of `local`.
     pub(super) power: i32,
     /// A bound on the error of each coordinate of `local`, in the same unit.
-    pub(super) error: f64,
+    pub(super) error: R,
 }
 
 impl Meeting {
     /// The point minus the anchor, each coordinate rounded once.
     #[inline(always)]
     pub(super) fn local(&self) -> DVec3 {
-        let scale = exp2i(self.power);
-        DVec3::from_array(self.local.map(|x| x.to_f64() * scale))
+        self.locally().into()
     }
 
     /// The world point, each coordinate rounded once.
     #[inline(always)]
     pub(super) fn point(&self, anchor: DVec3) -> DVec3 {
-        let scale = exp2i(self.power);
-        let sum = |x: Double, a: f64| {
-            let (s, e) = two_sum(x.high * scale, a);
-            s + (e + x.low * scale)
-        };
-        let [x, y, z] = self.local;
-        DVec3::new(sum(x, anchor.x), sum(y, anchor.y), sum(z, anchor.z))
+        self.place(anchor).into()
     }
 
     /// The lengths of `local` along the two texture axes of a plane, which are world axes when its normal is one.
     #[inline(always)]
     pub(super) fn along<P: Product>(&self, axes: &[DVec3; 2], normal: Option<u8>) -> DVec2 {
-        let local = self.local();
-        match normal {
-            Some(0) => DVec2::new(local.y, local.z),
-            Some(1) => DVec2::new(local.x, local.z),
-            Some(_) => DVec2::new(local.x, local.y),
-            None => {
-                let length = |axis: DVec3| dot::<P>(&self.local, &doubles(axis), 0.0).0.to_f64();
-                DVec2::new(length(axes[0]), length(axes[1])) * exp2i(self.power)
-            }
-        }
+        DVec2::from_array(self.lengths::<P>(axes, normal))
     }
 
     /// The error radius of a world point made by [`point`](Meeting::point).
+    #[inline(always)]
+    pub(super) fn error_radius(&self, point: DVec3) -> f64 {
+        self.radius(point.into())
+    }
+}
+
+impl<R: Real> Meeting<R> {
+    /// [`local`](Meeting::local), for any lanes.
+    #[inline(always)]
+    pub(super) fn locally(&self) -> Vector<R> {
+        let scale = self.t.all(exp2i(self.power));
+        let [x, y, z] = self.local;
+        Vector { x: x.to_f64(), y: y.to_f64(), z: z.to_f64() } * scale
+    }
+
+    /// [`point`](Meeting::point), for any lanes.
+    #[inline(always)]
+    pub(super) fn place(&self, anchor: DVec3) -> Vector<R> {
+        let scale = self.t.all(exp2i(self.power));
+        let [x, y, z] = self.local;
+        Vector {
+            x: rounded_sum(x, scale, anchor.x),
+            y: rounded_sum(y, scale, anchor.y),
+            z: rounded_sum(z, scale, anchor.z),
+        }
+    }
+
+    /// [`along`](Meeting::along), for any lanes.
+    #[inline(always)]
+    pub(super) fn lengths<P: Product>(&self, axes: &[DVec3; 2], normal: Option<u8>) -> [R; 2] {
+        let local = self.locally();
+        match normal {
+            Some(0) => [local.y, local.z],
+            Some(1) => [local.x, local.z],
+            Some(_) => [local.x, local.y],
+            None => [self.length::<P>(axes[0]), self.length::<P>(axes[1])],
+        }
+    }
+
+    #[inline(always)]
+    fn length<P: Product>(&self, axis: DVec3) -> R {
+        let axis = exactly(Vector::all(self.t, axis));
+        let length = dot::<P, R>(&self.local, &axis, self.t.all(0.0)).0.to_f64();
+        length * self.t.all(exp2i(self.power))
+    }
+
+    /// The error radius of a world point made by [`place`](Meeting::place).
     ///
     /// Each coordinate of the point is within half a unit in the last place, `u |p_i|`, and moving the start of a
     /// ray by the radius rounds once more by as much; `1 + 16 u` pays for the roundings of this sum. The error of
     /// `local` itself comes on top, once for each coordinate.
     #[inline(always)]
-    pub(super) fn error_radius(&self, point: DVec3) -> f64 {
-        let a = point.abs();
-        (2.0 * U * (1.0 + 16.0 * U)) * (a.x + a.y + a.z)
-            + 3.0 * self.error * exp2i(self.power)
-            + f64::from_bits(8)
+    pub(super) fn radius(&self, point: Vector<R>) -> R {
+        let one = self.t;
+        one.all(2.0 * U * (1.0 + 16.0 * U)) * (point.x.abs() + point.y.abs() + point.z.abs())
+            + one.all(3.0) * self.error * one.all(exp2i(self.power))
+            + one.all(f64::from_bits(8))
     }
+}
+
+/// `x scale + a`, rounded once.
+#[inline(always)]
+fn rounded_sum<R: Real>(x: Double<R>, scale: R, a: f64) -> R {
+    let (s, e) = two_sum(x.high * scale, scale.all(a));
+    s + (e + x.low * scale)
+}
+
+/// A vector as the exact numbers it is.
+#[inline(always)]
+fn exactly<R: Real>(v: Vector<R>) -> [Double<R>; 3] {
+    let low = v.x.all(0.0);
+    [Double { high: v.x, low }, Double { high: v.y, low }, Double { high: v.z, low }]
 }
 
 /// A flat piece of a surface: what [`surface`] needs to make the full record of a hit.
@@ -124,8 +169,8 @@ impl<S: Piece> Task for Record<'_, S> {
     #[inline(always)]
     fn run<P: Product>(self) -> Surface {
         let plane = self.piece.plane();
-        let w = difference(plane.anchor, self.ray.origin);
-        match place::<P>(&plane, plane.offset, &w, self.ray.direction) {
+        let w = difference(plane.anchor.into(), self.ray.origin.into());
+        match certain::<P>(&plane, plane.offset, &w, self.ray.direction) {
             Some(Place { t, local, error }) => {
                 self.piece.record::<P>(&Meeting { t: t.high, local, power: 0, error })
             }
@@ -152,66 +197,94 @@ fn surface_exactly<S: Piece>(piece: &S, ray: &Ray, hit: Hit) -> Surface {
 }
 
 /// A place in a plane.
-struct Place {
-    t: Double,
-    local: [Double; 3],
+struct Place<R = f64> {
+    t: Double<R>,
+    local: [Double<R>; 3],
     /// A bound on the error of each coordinate of `local`.
-    error: f64,
+    error: R,
 }
 
-/// Where a ray meets a plane, in double-double; `None` unless the parameter is right to 2^-70 of itself and `local` to
-/// 2^-60 of its largest coordinate, or when a range is left that excludes under- and overflow.
+/// [`place`] for one ray, where it is certain.
+#[inline(always)]
+fn certain<P: Product>(plane: &ExactPlane, offset: f64, w: &[Double; 3], d: DVec3) -> Option<Place> {
+    let (place, sound) = place::<P, f64>(plane, offset, w, d.into());
+    (sound != 0).then_some(place)
+}
+
+/// Where a ray meets a plane, in double-double, and in which lanes that is certain: not unless the parameter is right to
+/// 2^-70 of itself and `local` to 2^-60 of its largest coordinate, nor when a range is left that excludes under- and
+/// overflow.
 ///
 /// `w` is the anchor seen from the origin of the ray, exactly.
 #[inline(always)]
-fn place<P: Product>(plane: &ExactPlane, offset: f64, w: &[Double; 3], d: DVec3) -> Option<Place> {
+fn place<P: Product, R: Real>(
+    plane: &ExactPlane,
+    offset: f64,
+    w: &[Double<R>; 3],
+    d: Vector<R>,
+) -> (Place<R>, u32) {
+    let zero = d.x.all(0.0);
+    let exact = exactly(d);
     let (numerator, n_size, denominator, d_size) = match plane.axis {
         Some(k) => {
-            let (w, d) = match k {
-                0 => (w[0], d.x),
-                1 => (w[1], d.y),
-                _ => (w[2], d.z),
-            };
-            (w, w.high.abs(), Double::from(d), d.abs())
+            let k = if k < 2 { usize::from(k) } else { 2 };
+            (w[k], w[k].high.abs(), exact[k], exact[k].high.abs())
         }
         None => {
-            let (numerator, n_size) = dot::<P>(&plane.normal, w, offset);
-            let (denominator, d_size) = dot::<P>(&plane.normal, &doubles(d), 0.0);
+            let [x, y, z] = plane.normal;
+            let normal = [Double::all(zero, x), Double::all(zero, y), Double::all(zero, z)];
+            let (numerator, n_size) = dot::<P, R>(&normal, w, zero.all(offset));
+            let (denominator, d_size) = dot::<P, R>(&normal, &exact, zero);
             (numerator, n_size, denominator, d_size)
         }
     };
-    let inverse = 1.0 / denominator.high;
+    let inverse = zero.all(1.0) / denominator.high;
     let t = numerator.div_with::<P>(denominator, inverse);
-    let along = |w: Double, d: f64| {
-        let (p, e) = P::two_product(t.high, d);
-        let (s, f) = two_difference(p, w.high);
-        let (high, low) = fast_two_sum(s, ((e + t.low * d) + f) - w.low);
-        Double { high, low }
-    };
-    let mut local = [along(w[0], d.x), along(w[1], d.y), along(w[2], d.z)];
+    let mut local = [along::<P, R>(t, d.x, w[0]), along::<P, R>(t, d.y, w[1]), along::<P, R>(t, d.z, w[2])];
+    let nothing = Double { high: zero, low: zero };
     match plane.axis {
-        Some(0) => local[0] = Double::ZERO,
-        Some(1) => local[1] = Double::ZERO,
-        Some(_) => local[2] = Double::ZERO,
+        Some(0) => local[0] = nothing,
+        Some(1) => local[1] = nothing,
+        Some(_) => local[2] = nothing,
         None => {}
     }
-    let reach = largest(DVec3::new(w[0].high, w[1].high, w[2].high));
-    let speed = largest(d);
+    let reach = Vector { x: w[0].high, y: w[1].high, z: w[2].high }.largest();
+    let speed = d.largest();
     // The sums err by 2^-99 of the sizes of their terms, the quotient by 2^-101 of itself. Of a coordinate of local,
     // the low part adds four roundings of at most 4 u (|t d| + |w|): 2^-102 of that.
     let size = t.high.abs();
-    let slack = exp2i(-98) * ((n_size + d_size * size) * inverse.abs());
-    let error = slack * speed + exp2i(-100) * (size * speed + reach);
-    let least = largest(DVec3::new(local[0].high, local[1].high, local[2].high));
+    let slack = zero.all(exp2i(-98)) * ((n_size + d_size * size) * inverse.abs());
+    let error = slack * speed + zero.all(exp2i(-100)) * (size * speed + reach);
+    let least = Vector { x: local[0].high, y: local[1].high, z: local[2].high }.largest();
     // In these ranges |t| lies between 2^-654 and 2^654: no product of large parts overflows, and what the others
     // lose to underflow is 2^-1074, nothing against 2^-100 of the numerator. NaN makes a comparison false.
-    let sound = (slack < exp2i(-70) * size)
-        & (error < exp2i(-60) * least)
-        & (numerator.high.abs() > exp2i(-400))
-        & (denominator.high.abs() > exp2i(-400))
-        & (reach < exp2i(250))
-        & (speed < exp2i(250));
-    sound.then_some(Place { t, local, error })
+    let sound = slack.less(zero.all(exp2i(-70)) * size)
+        & error.less(zero.all(exp2i(-60)) * least)
+        & zero.all(exp2i(-400)).less(numerator.high.abs())
+        & zero.all(exp2i(-400)).less(denominator.high.abs())
+        & reach.less(zero.all(exp2i(250)))
+        & speed.less(zero.all(exp2i(250)));
+    (Place { t, local, error }, sound)
+}
+
+/// `t d - w`.
+#[inline(always)]
+fn along<P: Product, R: Real>(t: Double<R>, d: R, w: Double<R>) -> Double<R> {
+    let (p, e) = R::two_product::<P>(t.high, d);
+    let (s, f) = two_difference(p, w.high);
+    let (high, low) = fast_two_sum(s, ((e + t.low * d) + f) - w.low);
+    Double { high, low }
+}
+
+/// Where four rays meet the plane of a piece, and in which lanes that is certain.
+#[inline(always)]
+pub(super) fn four<L: Lanes>(piece: &impl Piece, lanes: L, rays: [&Ray; 4]) -> (Meeting<Four<L>>, u32) {
+    let plane = piece.plane();
+    let d = Vector::new(lanes, rays.map(|ray| ray.direction));
+    let w = difference(Vector::all(d.x, plane.anchor), Vector::new(lanes, rays.map(|ray| ray.origin)));
+    // The lanes bring their own products.
+    let (Place { t, local, error }, sound) = place::<Dekker, Four<L>>(&plane, plane.offset, &w, d);
+    (Meeting { t: t.high, local, power: 0, error }, sound)
 }
 
 /// `a . b + c`, and the sum of the sizes of its terms, `S`: products and sums of high parts without error, their
@@ -219,17 +292,22 @@ fn place<P: Product>(plane: &ExactPlane, offset: f64, w: &[Double; 3], d: DVec3)
 /// doi:10.1137/030601818). Errs by less than 2^-99 S: at most ten additions of parts that are below 8 u S together,
 /// 80 u^2 S; products of the low parts, what is left out of them and the rounding of a normal, 8 u^2 S.
 #[inline(always)]
-pub(super) fn dot<P: Product>(a: &[Double; 3], b: &[Double; 3], c: f64) -> (Double, f64) {
-    let term = |i: usize| {
-        let (p, e) = P::two_product(a[i].high, b[i].high);
-        (p, e + (a[i].high * b[i].low + a[i].low * b[i].high))
-    };
-    let ((x, x_low), (y, y_low), (z, z_low)) = (term(0), term(1), term(2));
+pub(super) fn dot<P: Product, R: Real>(a: &[Double<R>; 3], b: &[Double<R>; 3], c: R) -> (Double<R>, R) {
+    let (x, x_low) = term::<P, R>(a[0], b[0]);
+    let (y, y_low) = term::<P, R>(a[1], b[1]);
+    let (z, z_low) = term::<P, R>(a[2], b[2]);
     let (s, e) = two_sum(x, y);
     let (s, f) = two_sum(s, z);
     let (s, g) = two_sum(s, c);
     let (high, low) = fast_two_sum(s, ((x_low + y_low) + z_low) + ((e + f) + g));
     (Double { high, low }, x.abs() + y.abs() + z.abs() + c.abs())
+}
+
+/// The product of the high parts, and all else but the product of the low ones.
+#[inline(always)]
+fn term<P: Product, R: Real>(a: Double<R>, b: Double<R>) -> (R, R) {
+    let (p, e) = R::two_product::<P>(a.high, b.high);
+    (p, e + (a.high * b.low + a.low * b.high))
 }
 
 struct Meet<'a, S> {
@@ -245,7 +323,7 @@ impl<S: Piece> Task for Meet<'_, S> {
         let (direction, direction_power) = prescaled(self.ray.direction);
         let (w, power) = exact_difference(plane.anchor, self.ray.origin);
         let offset = plane.offset * exp2i(-power);
-        let place = match place::<P>(&plane, offset, &w, direction) {
+        let place = match certain::<P>(&plane, offset, &w, direction) {
             Some(place) => place,
             None => place_exactly::<P>(&self.piece.exact_normal(), &plane, offset, &w, direction)?,
         };
@@ -309,14 +387,14 @@ fn near_anchor<P: Product>(
 
 /// `a - b` as exact sums of two `f64`.
 #[inline(always)]
-fn difference(a: DVec3, b: DVec3) -> [Double; 3] {
+fn difference<R: Real>(a: Vector<R>, b: Vector<R>) -> [Double<R>; 3] {
     [Double::difference(a.x, b.x), Double::difference(a.y, b.y), Double::difference(a.z, b.z)]
 }
 
 /// `a - b` as exact sums of two `f64`, in units of the returned power of two, in which the largest is in `[1, 2)`.
 #[inline(always)]
 pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
-    let w = difference(a, b);
+    let w = difference(a.into(), b.into());
     let power = power_of(DVec3::new(w[0].high, w[1].high, w[2].high));
     let scale = exp2i(-power);
     (w.map(|x| x.scale_exact(scale)), power)
@@ -325,6 +403,8 @@ pub(super) fn exact_difference(a: DVec3, b: DVec3) -> ([Double; 3], i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scaled::largest;
+    use crate::shape::flat::doubles;
     use crate::testing::Random;
 
     struct Somewhere<'a>(&'a ExactPlane, &'a Ray);
@@ -333,7 +413,12 @@ mod tests {
         type Output = Option<Place>;
         fn run<P: Product>(self) -> Option<Place> {
             let Somewhere(plane, ray) = self;
-            place::<P>(plane, plane.offset, &difference(plane.anchor, ray.origin), ray.direction)
+            certain::<P>(
+                plane,
+                plane.offset,
+                &difference(plane.anchor.into(), ray.origin.into()),
+                ray.direction,
+            )
         }
     }
 
@@ -377,7 +462,7 @@ mod tests {
     impl Task for Dot {
         type Output = (Double, f64);
         fn run<P: Product>(self) -> Self::Output {
-            dot::<P>(&self.0, &self.1, self.2)
+            dot::<P, f64>(&self.0, &self.1, self.2)
         }
     }
 

@@ -4,7 +4,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod disk;
-mod flat;
+pub(crate) mod flat;
 mod frustum;
 mod meeting;
 mod plane;

@@ -7,10 +7,11 @@
 use super::flat::{self, Doubt, Facing, Relative, Rough, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::expansion::Expansion;
-use crate::kernel::Product;
+use crate::kernel::{Dekker, Lanes, Product};
 use crate::scaled::checked_point;
+use crate::surface::Coordinates;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// An infinite plane. It has one part, 0, and a line meets it once at most.
 ///
@@ -86,6 +87,39 @@ impl Plane {
             Ok(hit) => there.hit(hit?, within),
             Err(Doubt { ended: false }) => within.admit(meeting::meet(self, ray)?.t, 0, 0),
             Err(Doubt { ended: true }) => None,
+        }
+    }
+
+    /// The records of four hits: [`Primitive::surface`] for each.
+    #[inline(always)]
+    pub(crate) fn surface_four<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        let (at, sound) = meeting::four(self, lanes, rays);
+        let point = at.place(self.point());
+        let (t, error) = (at.t.to_array(), at.radius(point).to_array());
+        let (point, local) = (point.to_array(), at.locally().to_array());
+        // The lanes bring their own products.
+        let [u, v] = at.lengths::<Dekker>(&self.axes, self.axis).map(|x| x.to_array());
+        for (i, surface) in surfaces.into_iter().enumerate() {
+            if sound >> i & 1 == 0 {
+                *surface = self.surface(rays[i], hits[i]);
+                continue;
+            }
+            // Each number goes straight to its place: a record made first and copied would be read before it is written.
+            let uv = DVec2::new(u[i], v[i]);
+            surface.t = t[i];
+            surface.point = point[i];
+            surface.local = local[i];
+            surface.object_point = uv.extend(0.0);
+            surface.normal = self.normal;
+            surface.shading_normal = self.normal;
+            surface.coordinates = Coordinates::Known(uv);
+            surface.error = error[i];
         }
     }
 

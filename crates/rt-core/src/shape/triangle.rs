@@ -147,7 +147,13 @@ impl Triangle {
         if least < 0 && most > 0 {
             return None;
         }
-        within.admit(meeting::meet(self, ray)?.t, 0, 0)
+        let at = meeting::meet(self, ray)?;
+        // From more than 2^500 sizes away the signs are those of underflow; then the place tells.
+        let beside = at
+            .local
+            .iter()
+            .any(|x| x.high.abs() > 2.0 * at.error + 2.0 * times_power(self.sides.reach, -at.power));
+        if beside { None } else { within.admit(at.t, 0, 0) }
     }
 }
 
@@ -500,5 +506,31 @@ mod tests {
             assert!((uv - expected).abs().cmple(expected.abs() * f64::EPSILON).all(), "{uv} {expected}");
         }
         assert!(count > 100, "{count}");
+    }
+
+    /// Seen from 2^1090 sizes away the edges are nothing beside the corners, and all edge functions zero: the place tells
+    /// that the ray passes.
+    #[test]
+    fn passed_by_from_afar() {
+        let tiny = Triangle::new([4.982064e-318, 0.0, 0.0], [0.0; 3], [0.0, 6.378214640626665e-306, 0.0]);
+        let ray = Ray::new([-3.9e-156, 4.8e21, -9.6e-229], [-73.4453125, -40.3828125, 2.9e-322]);
+        assert_eq!(tiny.unwrap().hit(&ray, Interval::LINE), None);
+    }
+
+    /// A ray that begins at one of two corners 10^-19 sizes apart meets the triangle there.
+    #[test]
+    fn a_start_at_the_corner_of_a_sliver() {
+        let b = DVec3::splat(-1.0141204801825844e31);
+        let c = DVec3::new(b.x, -1.0141204801824745e31, b.z);
+        let a = [-5.974201560428325e37, 2.074884984312466e36, -2.1267647932558652e37];
+        let sliver = Triangle::new(a, b, c).unwrap();
+        for direction in
+            [[-5.575186299632661e42, 1.817502137570498e39, -3.902630410391896e44], [0.0, 1.0, 7.0]]
+        {
+            let ray = Ray::new(b, direction);
+            let hit = sliver.hit(&ray, Interval::LINE).unwrap();
+            assert_eq!((hit.t(), sliver.surface(&ray, hit).point), (0.0, b));
+            crate::testing::check_crossings(&sliver.clone().into(), &ray).unwrap();
+        }
     }
 }

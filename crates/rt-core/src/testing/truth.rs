@@ -10,7 +10,7 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{Product, Task, run};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{ScaledRay, largest};
-use crate::shape::{Cone, Cylinder, Triangle};
+use crate::shape::{Cone, Cylinder, Triangle, flat};
 use crate::{Interval, Primitive, Ray, Shape, Surface};
 use alloc::boxed::Box;
 use alloc::format;
@@ -360,8 +360,9 @@ enum Outline {
     None,
     /// The circle about the anchor as large as the shape.
     Circle,
-    /// The second and third corner, the first being the anchor.
-    Corners([DVec3; 2]),
+    /// The second and third corner, the first being the anchor, and the edge between them, which is not the difference of
+    /// their rounded coordinates where they are close together.
+    Corners([DVec3; 2], DVec3),
 }
 
 struct Flat {
@@ -370,19 +371,17 @@ struct Flat {
     outline: Outline,
 }
 
-/// The cross product of two vectors.
+/// The cross product of two vectors, each coordinate summed without error and rounded to double-double: of a sliver's
+/// edges the products cancel, and a normal from rounded ones would be none.
 struct Cross(DoubleVector, DoubleVector);
 
 impl Task for Cross {
     type Output = DoubleVector;
     #[inline(always)]
     fn run<P: Product>(self) -> DoubleVector {
-        let (a, b) = (self.0, self.1);
-        DoubleVector {
-            x: a.y.mul::<P>(b.z) - a.z.mul::<P>(b.y),
-            y: a.z.mul::<P>(b.x) - a.x.mul::<P>(b.z),
-            z: a.x.mul::<P>(b.y) - a.y.mul::<P>(b.x),
-        }
+        let [a, b] = [self.0, self.1].map(|v| [v.x, v.y, v.z]);
+        let [x, y, z] = flat::cross::<P>(&a, &b).map(|sum| sum.rounded());
+        DoubleVector { x, y, z }
     }
 }
 
@@ -411,16 +410,18 @@ impl Flat {
 
     fn triangle(shape: &Triangle) -> Option<Model> {
         let [a, b, c] = shape.corners();
-        let (b, c) = (DoubleVector::difference(b, a), DoubleVector::difference(c, a));
-        let size = largest(b.high()).max(largest(c.high()));
+        let edges = [(b, a), (c, a), (c, b)].map(|(to, from)| DoubleVector::difference(to, from));
+        let size = largest(edges[0].high()).max(largest(edges[1].high()));
         let unit = exponent(size);
-        let (b, c) = (b.scale_exact(exp2i(-unit)), c.scale_exact(exp2i(-unit)));
+        let [b, c, between] = edges.map(|edge| edge.scale_exact(exp2i(-unit)));
         let normal = run(Cross(b, c));
-        // Of a sliver thinner than this even double-double keeps no digit.
-        if largest(normal.high()) < exp2i(-90) {
+        // Only of edges whose least products leave the range of numbers.
+        if largest(normal.high()) < exp2i(-400) {
             return None;
         }
-        Some(Flat { normal, outline: Outline::Corners([b.high(), c.high()]) }.model(a, size))
+        let normal = normal.scale_exact(exp2i(-exponent(largest(normal.high()))));
+        let outline = Outline::Corners([b.high(), c.high()], between.high());
+        Some(Flat { normal, outline }.model(a, size))
     }
 
     /// Whether the line crosses, if that is not in doubt.
@@ -435,15 +436,15 @@ impl Flat {
         let inside = match self.outline {
             Outline::None => return Some(true),
             Outline::Circle => model.size - place.length(),
-            Outline::Corners([b, c]) => {
+            Outline::Corners([b, c], between) => {
                 let normal = self.normal.high();
                 let normal = normal / largest(normal);
                 // Seen along an axis, the edges keep their order; the height over each is at most the distance.
-                let over = |from: DVec3, to: DVec3| {
-                    let edge = to - from;
+                let over = |from: DVec3, edge: DVec3| {
+                    let edge = edge / largest(edge);
                     normal.dot(edge.cross(place - from)) / (normal.length() * edge.length())
                 };
-                let heights = [over(DVec3::ZERO, b), over(b, c), over(c, DVec3::ZERO)];
+                let heights = [over(DVec3::ZERO, b), over(b, between), over(c, -c)];
                 heights.into_iter().fold(f64::INFINITY, f64::min)
             }
         };
@@ -485,16 +486,26 @@ mod tests {
         assert!(line.judge(&model, distance, &[-t, 0.0, t], &[cosine; 3]).is_err());
     }
 
-    /// A sliver so thin that double-double has no normal for it is not judged, others are.
+    /// However thin a sliver is, it has a normal, and rays that hit it are judged, as long as its products are numbers.
     #[test]
-    fn slivers_have_no_oracle() {
-        for (height, judged) in [(1e-20, true), (exp2i(-88), true), (exp2i(-92), false)] {
-            let sliver = Triangle::new([0.0; 3], [1.0, 0.0, 0.0], [0.5, height, 0.0]);
-            if let Ok(sliver) = sliver {
-                assert_eq!(Model::new(&sliver.into()).is_some(), judged, "{height:e}");
-            } else {
-                assert!(!judged);
+    fn slivers_are_judged() {
+        let corners =
+            |height: f64| [DVec3::ZERO, DVec3::new(3.0, 1.0, -1.0), DVec3::new(1.5, 0.5, height - 0.5)];
+        for power in [-1, -20, -50, -52] {
+            let [a, b, c] = corners(exp2i(power));
+            let sliver = Shape::from(Triangle::new(a, b, c).unwrap());
+            let normal = (b - a).cross(c - a);
+            for (along, aside) in [(0.3, 0.0), (0.5, -0.25), (0.9, 2.0), (-0.5, 0.0)] {
+                let to = b * along + (c - b * 0.5) * (aside + 0.1);
+                let ray = Ray::new(to + normal / largest(normal), -normal);
+                check_crossings(&sliver, &ray).unwrap();
             }
+        }
+        for (height, judged) in
+            [(1e-20, true), (exp2i(-200), true), (exp2i(-390), true), (exp2i(-410), false)]
+        {
+            let sliver = Triangle::new([0.0; 3], [1.0, 0.0, 0.0], [0.5, height, 0.0]).unwrap();
+            assert_eq!(Model::new(&sliver.into()).is_some(), judged, "{height:e}");
         }
     }
 

@@ -24,6 +24,8 @@ pub(super) struct Line {
     pub z: Double,
     pub z_growth: Double,
     pub height: Double,
+    /// The end that is the apex, if one is: nothing enters or leaves through it, but next to it through the side.
+    tip: Option<u32>,
     /// The growth of the radius along the ray: its sign says on which nappe the ray ends.
     e1: Double,
     /// The leading coefficient: negative where the ray runs steeper than the side.
@@ -87,7 +89,12 @@ impl Task for FindLine<'_> {
             let q = root - b;
             [c.div::<P>(q), quotient::<P>(q, a)]
         };
-        Line { shift, start, z, z_growth, height: f.height, e1, a, c, depth, side }
+        let tip = match [f.base_radius, f.top_radius] {
+            [0.0, _] => Some(BASE),
+            [_, 0.0] => Some(TOP),
+            _ => None,
+        };
+        Line { shift, start, z, z_growth, height: f.height, tip, e1, a, c, depth, side }
     }
 }
 
@@ -169,6 +176,9 @@ impl Line {
         if !(from.at < to.at) {
             return [None; 2];
         }
+        // Next to the apex rounding orders the side and the plane across it.
+        let from = if self.tip == Some(from.part) { enter } else { from };
+        let to = if self.tip == Some(to.part) { leave } else { to };
         [from, to].map(|c| if closed || c.part == SIDE { Some(c) } else { None })
     }
 
@@ -185,7 +195,7 @@ impl Line {
             // Likewise, along a cap.
             None => Crossing { at: -INFINITE, part: if part == SIDE { BASE } else { part }, root: 0 },
         };
-        let exit = if leave.at < last.at { leave } else { last };
+        let exit = if leave.at < last.at || self.tip == Some(last.part) { leave } else { last };
         if closed || exit.part == SIDE { Some(exit) } else { None }
     }
 }
@@ -209,7 +219,7 @@ mod tests {
         let [z, z_growth, e1, a, c, depth] = [z, z_growth, e1, a, c, depth].map(Double::from);
         let side = side.map(Double::from);
         let (shift, start, height) = (Double::ZERO, DoubleVector::default(), Double::ONE);
-        Line { shift, start, z, z_growth, height, e1, a, c, depth, side }
+        Line { shift, start, z, z_growth, height, tip: None, e1, a, c, depth, side }
     }
 
     /// What a line has in common with slab and side, and where one leaves that is known to be inside.

@@ -195,3 +195,40 @@ fn needles_are_crossed_twice() {
         assert_eq!(found, [crosses; 2], "{f:?} {ray:?}");
     }
 }
+
+/// A line next to the apex enters and leaves through the side, whatever rounding makes of the order of the side and the
+/// plane across the apex: an entrance is never lost, so the first hit faces the ray, and nothing lies on the way back.
+#[test]
+fn next_to_the_apex() {
+    let mut random = Random::new(8);
+    let mut count = 0;
+    for case in 0..40_000 {
+        let slope = random.magnitude(-8.0, 0.5);
+        let height = random.uniform(0.5, 2.0);
+        let axis = [DVec3::X, DVec3::NEG_Z, random.direction()][case % 3];
+        let radii = if case % 2 == 0 { [slope * height, 0.0] } else { [0.0, slope * height] };
+        let (base, top) =
+            if case % 2 == 0 { (axis * height, DVec3::ZERO) } else { (DVec3::ZERO, axis * height) };
+        let frustum = Frustum::new(base, radii, top, ["a", "b"], case % 5 == 0).unwrap();
+        let origin = random.in_cube() * random.magnitude(0.0, 9.0);
+        let beside = random.in_cube() * random.magnitude(-18.0, -13.0);
+        let ray = Ray::new(origin, beside - origin);
+        let mut hits = alloc::vec::Vec::new();
+        frustum.crossings::<true>(&ray, Interval::LINE, &mut |hit| hits.push(hit));
+        let Some(&first) = hits.first() else { continue };
+        count += 1;
+        let apex = if radii[1] == 0.0 { TOP } else { BASE };
+        assert!(hits.iter().all(|hit| hit.part() != apex), "{frustum:?} {ray:?} {hits:?}");
+        if first.part() == SIDE && hits.len() == 2 {
+            assert_eq!(first.root(), 0, "{frustum:?} {ray:?}");
+        }
+        if hits.len() == 1 {
+            // The other end of what line and cone share is the open base.
+            assert!(
+                !frustum.closed && (first.root() == 1) == (ray.direction.dot(axis) < 0.0),
+                "{frustum:?} {ray:?} {hits:?}"
+            );
+        }
+    }
+    assert!(count > 3000, "{count}");
+}

@@ -48,19 +48,21 @@ struct Node {
 }
 
 /// The rounding of `k` and `z` in units of their scale, `(R + r)^2` and `R + r`: some twenty roundings of 2^-104.
-const ROUNDING: f64 = exp2i(-99);
+pub(super) const ROUNDING: f64 = exp2i(-99);
 
 /// How large a value of `f` at `x` double-double arithmetic can return for an exact zero: the roundings of `k` and
-/// `z` times the derivatives of `f` by them, and those of the last difference.
+/// `z` times the derivatives of `f` by them, and those of the last difference. In the form that `f` is evaluated in there,
+/// which digits of `k` beyond `f64` may decide.
 #[inline(always)]
-pub(super) fn uncertainty(torus: &Torus, line: &Line, x: f64) -> f64 {
+pub(super) fn uncertainty<P: Product>(torus: &Torus, line: &Line, x: Double) -> f64 {
     let square = 4.0 * torus.major_scaled * torus.major_scaled;
-    let k = line.k.high + x * x;
+    let k = (line.k + x.square::<P>()).high;
     if let Some(core) = &line.core
         && k < -0.25 * square
     {
-        return ROUNDING * core.magnitude(x, 0.5 * square);
+        return ROUNDING * core.magnitude::<P>(x, 0.5 * square);
     }
+    let x = x.high;
     let z = line.z.high + x * line.slope.high;
     let gap = (torus.minor_scaled - z) * (torus.minor_scaled + z);
     let reach = torus.reach;
@@ -103,7 +105,7 @@ pub(super) fn crossings<P: Product>(torus: &Torus, line: &Line) -> Crossings {
             Some(&x) if i < count => {
                 let value = line.value::<P>(x).0.high;
                 // Touching from within counts as within, touching from without as without.
-                let inside = if value.abs() <= uncertainty(torus, line, x.high) {
+                let inside = if value.abs() <= uncertainty::<P>(torus, line, x) {
                     i == 1 && low.inside
                 } else {
                     value < 0.0
@@ -275,7 +277,7 @@ mod tests {
             });
             let z = line.z.high + x * line.slope.high;
             let terms = k * k + square * (torus.minor_scaled * torus.minor_scaled - z * z).abs();
-            let found = uncertainty(&torus, &line, x) / ROUNDING;
+            let found = uncertainty::<crate::kernel::Dekker>(&torus, &line, Double::from(x)) / ROUNDING;
             let expected = worst_k + worst_z + terms;
             assert!((found / expected - 1.0).abs() < 1e-6, "{torus:?} {ray:?} {x}: {found} {expected}");
         }

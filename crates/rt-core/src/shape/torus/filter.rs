@@ -264,7 +264,8 @@ fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
     let slope = (square + p).mul::<P>(c) + q;
     c = c - slope.high / (0.5 * bend);
     let value = line.value::<P>(c).0.high;
-    if value.abs() <= exact::uncertainty(torus, line, x) || value.is_nan() {
+    // Twice, so that where this is certain of a sign, so is the module `exact` at its own rounding of the place.
+    if value.abs() <= 2.0 * exact::uncertainty::<P>(torus, line, c) || value.is_nan() {
         return None;
     }
     Some(Node { x: c.high, low: c.low, value, bend, inside: value < 0.0, sharp: true })

@@ -203,7 +203,7 @@ impl<F: FnMut(Hit) -> bool> Task for Leave<'_, F> {
         let mut low = Node { y: Double::ZERO, inside: inside_at_start };
         for &y in extrema.iter().flatten() {
             let value = cubic.value::<P>(y).0;
-            let unknown = uncertainty(torus, &line, s.high + y.high);
+            let unknown = uncertainty::<P>(torus, &line, s + y);
             let tangent = (value.high * y.high).abs() <= unknown;
             if y.high < 0.0 {
                 let inside = if tangent { inside_before } else { value.high > 0.0 };

@@ -18,6 +18,7 @@
 //! with `m'` and `u'` the parts across the axis: there it is the difference of two small numbers.
 
 use super::Torus;
+use super::exact::ROUNDING;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
 use crate::kernel::Product;
@@ -90,12 +91,14 @@ impl Core {
 
     /// How far double-double arithmetic may be off in `f` at `x`, in units of its rounding.
     #[inline(always)]
-    pub fn magnitude(&self, x: f64, twice: f64) -> f64 {
-        let k = self.k.high + x * x;
+    pub fn magnitude<P: Product>(&self, x: Double, twice: f64) -> f64 {
+        // The difference of two like numbers: small where the sheets of a spindle meet.
+        let k = (self.k + x.square::<P>()).high;
+        let x = x.high;
         let rho = (x * self.slope.high + 2.0 * self.product.high) * x + self.square.high;
         let parts = x * x * self.slope.high + 2.0 * (x * self.product.high).abs() + self.square.high;
         let scale = x * x + self.square.high + self.k.high.abs();
-        2.0 * k.abs() * scale + k * k + 2.0 * twice * (rho.abs() + parts)
+        2.0 * k.abs() * scale + k * k + ROUNDING * scale * scale + 2.0 * twice * (rho.abs() + parts)
     }
 }
 
@@ -249,7 +252,7 @@ mod tests {
             let (k, twice) = (core.k.high + x * x, torus.twice.high);
             let least = k * k + 2.0 * twice * 2.0 * rho_squared;
             let most = 8.0 * torus.reach * torus.reach * torus.reach * torus.reach;
-            let magnitude = core.magnitude(x, twice);
+            let magnitude = core.magnitude::<crate::kernel::Dekker>(Double::from(x), twice);
             assert!((0.999 * least..most).contains(&magnitude), "{torus:?} {x}: {least} {magnitude} {most}");
         }
         assert!(count > 500, "{count}");

@@ -261,8 +261,11 @@ impl Torus {
         // From the circle to the point: `out` along the radius, `z` along the axis. No digit is lost in what follows.
         let out = if inner { rho + self.major_scaled } else { rho - self.major_scaled };
         // Near the axis, where the sheets of a spindle meet in a point, `across` is a small difference and no longer
-        // certain to be across: in f64 less than a unit beyond this distance, nearer the length is mended.
-        let pinched = rho.high < exp2i(-20);
+        // certain to be across: in f64 less than a unit beyond this distance, nearer the length is mended. Likewise where the
+        // place is not known to an eighth of a rounding of the tube: on tubes thinner than 2^-50 of the ring, or from afar.
+        let uncertainty = exact::uncertainty::<P>(self, line, x);
+        let error = place_error(uncertainty, line.slope_at(x.high));
+        let pinched = rho.high < exp2i(-20) || error > exp2i(-56) * self.minor_scaled;
         let normal = if rho.high > 0.0 {
             let normal = across.high() * (out.high / (rho.high * self.minor_scaled))
                 + self.axis * (z.high / self.minor_scaled);
@@ -272,8 +275,6 @@ impl Torus {
             self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
         let t = ray.unscale(parameter).to_f64();
-        let uncertainty = exact::uncertainty(self, line, x.high);
-        let error = place_error(uncertainty, line.slope_at(x.high));
         self.finish(t, Place { local, normal, out: out.high, z: z.high, inner, error })
     }
 

@@ -1,0 +1,257 @@
+//! Arithmetic that is written once, for one number and for four at a time.
+//!
+//! What computes with lanes is a function with `#[inline(always)]`, never a closure of more than an operation or two: a closure
+//! that is not inlined is not compiled for the instruction set, and each operation in it is a call.
+
+use super::{Lanes, Product};
+use core::ops::{Add, Div, Mul, Neg, Sub};
+use glam::DVec3;
+
+/// A number, or one in each of four lanes. Each lane rounds as a number by itself does, so the bits are the same.
+pub trait Real:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The same number in all lanes, of as many as `self` has.
+    fn all(self, x: f64) -> Self;
+    /// The square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// The absolute value.
+    fn abs(self) -> Self;
+    /// The lanes in which `self < other`, one bit each, lane 0 the lowest.
+    fn less(self, other: Self) -> u32;
+    /// `if a < b { then } else { otherwise }`.
+    fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// `if a <= b { then } else { otherwise }`.
+    fn if_at_most(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// [`Product::two_product`]; lanes bring a product of their own.
+    fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self);
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn all(self, x: f64) -> f64 {
+        x
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        crate::math::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn less(self, other: f64) -> u32 {
+        u32::from(self < other)
+    }
+    #[inline(always)]
+    fn if_less(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a < b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn if_at_most(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a <= b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn two_product<P: Product>(a: f64, b: f64) -> (f64, f64) {
+        P::two_product(a, b)
+    }
+}
+
+/// Four numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Four<L: Lanes>(L, L::D);
+
+impl<L: Lanes> Four<L> {
+    /// The lanes of an array.
+    #[inline(always)]
+    pub fn new(lanes: L, numbers: [f64; 4]) -> Self {
+        Four(lanes, lanes.load4(numbers))
+    }
+
+    /// The lanes as an array.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; 4] {
+        self.0.store4(self.1)
+    }
+
+    /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
+    #[inline(always)]
+    pub fn whole(self) -> [u32; 4] {
+        self.0.whole4(self.1)
+    }
+
+    /// The power of two with the exponent of each lane, which is positive: 0 for subnormal numbers, infinite for NaN.
+    #[inline(always)]
+    pub fn binade(self) -> Self {
+        Four(self.0, self.0.binade4(self.1))
+    }
+}
+
+macro_rules! operator {
+    ($name:ident $method:ident $lanes:ident) => {
+        impl<L: Lanes> $name for Four<L> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Four(self.0, self.0.$lanes(self.1, other.1))
+            }
+        }
+    };
+}
+operator!(Add add add4);
+operator!(Sub sub sub4);
+operator!(Mul mul mul4);
+operator!(Div div div4);
+
+impl<L: Lanes> Neg for Four<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Four(self.0, self.0.neg4(self.1))
+    }
+}
+
+impl<L: Lanes> Real for Four<L> {
+    #[inline(always)]
+    fn all(self, x: f64) -> Self {
+        Four(self.0, self.0.splat4(x))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Four(self.0, self.0.sqrt4(self.1))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Four(self.0, self.0.abs4(self.1))
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.0.lt4(self.1, other.1)
+    }
+    #[inline(always)]
+    fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Four(a.0, a.0.if_less4(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn if_at_most(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Four(a.0, a.0.if_at_most4(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self) {
+        let (p, e) = a.0.two_product4(a.1, b.1);
+        (Four(a.0, p), Four(a.0, e))
+    }
+}
+
+/// Three coordinates. The operations are those of [`DVec3`], in its order.
+#[derive(Clone, Copy, Debug)]
+pub struct Vector<R> {
+    /// The first coordinate.
+    pub x: R,
+    /// The second.
+    pub y: R,
+    /// The third.
+    pub z: R,
+}
+
+impl From<DVec3> for Vector<f64> {
+    #[inline(always)]
+    fn from(v: DVec3) -> Self {
+        Vector { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl From<Vector<f64>> for DVec3 {
+    #[inline(always)]
+    fn from(v: Vector<f64>) -> Self {
+        DVec3::new(v.x, v.y, v.z)
+    }
+}
+
+impl<L: Lanes> Vector<Four<L>> {
+    /// One vector in each lane.
+    #[inline(always)]
+    pub fn new(lanes: L, [a, b, c, d]: [DVec3; 4]) -> Self {
+        Vector {
+            x: Four::new(lanes, [a.x, b.x, c.x, d.x]),
+            y: Four::new(lanes, [a.y, b.y, c.y, d.y]),
+            z: Four::new(lanes, [a.z, b.z, c.z, d.z]),
+        }
+    }
+
+    /// The vectors of the lanes.
+    #[inline(always)]
+    pub fn to_array(self) -> [DVec3; 4] {
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        [0, 1, 2, 3].map(|i| DVec3::new(x[i], y[i], z[i]))
+    }
+}
+
+impl<R: Real> Vector<R> {
+    /// The same vector in all lanes, of as many as `like` has.
+    #[inline(always)]
+    pub fn all(like: R, v: DVec3) -> Self {
+        Vector { x: like.all(v.x), y: like.all(v.y), z: like.all(v.z) }
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The largest absolute value of the components.
+    #[inline(always)]
+    pub fn largest(self) -> R {
+        let (x, y, z) = (self.x.abs(), self.y.abs(), self.z.abs());
+        let most = R::if_at_most(y, x, x, y);
+        R::if_at_most(z, most, most, z)
+    }
+
+    /// The length.
+    #[inline(always)]
+    pub fn length(self) -> R {
+        self.dot(self).sqrt()
+    }
+}
+
+impl<R: Real> Add for Vector<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Vector { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
+    }
+}
+
+impl<R: Real> Sub for Vector<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Vector { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
+    }
+}
+
+impl<R: Real> Neg for Vector<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Vector { x: -self.x, y: -self.y, z: -self.z }
+    }
+}
+
+impl<R: Real> Mul<R> for Vector<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: R) -> Self {
+        Vector { x: self.x * s, y: self.y * s, z: self.z * s }
+    }
+}
+
+impl<R: Real> Div<R> for Vector<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, s: R) -> Self {
+        Vector { x: self.x / s, y: self.y / s, z: self.z / s }
+    }
+}
