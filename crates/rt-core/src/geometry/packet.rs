@@ -7,7 +7,7 @@ use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
 use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
-use super::tree::Child;
+use super::tree::{Child, Node};
 use super::{CACHE, Geometry};
 use crate::Ray;
 use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
@@ -217,21 +217,8 @@ impl<Q: Query> Packet<'_, Q> {
     #[inline(always)]
     fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, bundle: &Bundle) {
         let beam = Beam::new(lanes, &bundle.shape);
-        let mut rays = [EightRays::EMPTY; GROUPS];
-        // The end of each ray, and that of the beam at the same place.
-        let mut limits = [[f32::NEG_INFINITY; 8]; GROUPS];
-        let mut depths = [[f32::NEG_INFINITY; 8]; GROUPS];
-        for group in bundle.groups.clone() {
-            let group = group % GROUPS;
-            rays[group] = EightRays::new(lanes, &self.side.origin[group], &self.side.direction[group]);
-            limits[group] = self.side.limit[group];
-            depths[group] = bundle.ends(lanes, group, &limits[group]);
-        }
-        let pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-21) + self.side.error);
-        let ball_pad = at_least((f64::from(bundle.far) + 1.0) * exp2i(-18) + self.side.error);
-        let mut end = greatest(lanes, &depths);
+        let mut ends = Ends::new(lanes, &self.side, bundle);
         let fetch = geometry.tree.bytes() > CACHE;
-
         let mut room = Room::<STACK>::default();
         let mut stack = room.enter();
         let mut indices = 0..geometry.tree.roots;
@@ -239,7 +226,12 @@ impl<Q: Query> Packet<'_, Q> {
             let base = stack.len();
             for index in indices {
                 let Some(node) = geometry.tree.nodes.get(index) else { continue };
-                let (mut mask, at) = beam.test(lanes, &node.boxes, lanes.splat(end));
+                let (mut mask, at) = beam.test(lanes, &node.boxes, lanes.splat(ends.most));
+                let mut leaves = 0;
+                if !Q::NEAREST_FIRST {
+                    leaves = mask & node.leaves(lanes);
+                    mask &= !leaves;
+                }
                 let at = lanes.store(at);
                 while mask != 0 {
                     let i = mask.trailing_zeros() as usize & 7;
@@ -260,12 +252,24 @@ impl<Q: Query> Packet<'_, Q> {
                             Child::place(index, i)
                         }
                     };
-                    stack.insert_descending(base, entry(at[i], place));
+                    if Q::NEAREST_FIRST {
+                        stack.insert_descending(base, entry(at[i], place));
+                    } else {
+                        stack.push(entry(at[i], place));
+                    }
+                }
+                while leaves != 0 {
+                    let i = leaves.trailing_zeros() as usize & 7;
+                    leaves &= leaves - 1;
+                    self.visit(lanes, geometry, bundle, &mut ends, node, i);
+                    if self.active == 0 {
+                        return;
+                    }
                 }
             }
             while let Some(top) = stack.pop() {
                 let (at, child) = unpack(top);
-                if !(at <= end) {
+                if !(at <= ends.most) {
                     continue;
                 }
                 if let Some(next) = child.as_node() {
@@ -274,47 +278,103 @@ impl<Q: Query> Packet<'_, Q> {
                 }
                 let (node, lane) = child.as_place();
                 let Some(node) = geometry.tree.nodes.get(node) else { continue };
-                let (min, max) = node.boxes.corners(lane);
-                let run = node.children[lane].run();
-                let ball = run.kind == Store::BALL && run.count == 1;
-                let mut mask = 0;
-                for group in bundle.groups.clone() {
-                    let group = group % GROUPS;
-                    let (rays, limits) = (&rays[group], &limits[group]);
-                    let met = if ball {
-                        rays.test_ball(lanes, min, max, ball_pad, limits)
-                    } else {
-                        rays.test(lanes, min, max, pad, limits)
-                    };
-                    mask |= met << (8 * group);
-                }
-                mask &= self.active;
-                let mut changed = false;
-                while mask != 0 {
-                    let i = mask.trailing_zeros() as usize & (PACKET - 1);
-                    mask &= mask - 1;
-                    let Some(ray) = self.rays.get(i) else { continue };
-                    let before = self.queries[i].limit();
-                    let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
-                    if flow.is_break() {
-                        self.active &= !(1 << i);
-                        (limits[i / 8][i % 8], depths[i / 8][i % 8]) = (f32::NEG_INFINITY, f32::NEG_INFINITY);
-                        changed = true;
-                    } else if self.queries[i].limit() != before {
-                        let limit = self.side.limit_of(i, self.queries[i].limit());
-                        (limits[i / 8][i % 8], depths[i / 8][i % 8]) = (limit, bundle.end(i, limit));
-                        changed = true;
-                    }
-                }
-                if changed {
-                    if self.active == 0 {
-                        return;
-                    }
-                    end = greatest(lanes, &depths);
+                self.visit(lanes, geometry, bundle, &mut ends, node, lane);
+                if self.active == 0 {
+                    return;
                 }
             }
             return;
         }
+    }
+
+    /// Shows the queries the shapes of a leaf whose rays may hit them.
+    #[inline(always)]
+    fn visit<L: Lanes>(
+        &mut self,
+        lanes: L,
+        geometry: &Geometry,
+        bundle: &Bundle,
+        ends: &mut Ends,
+        node: &Node,
+        lane: usize,
+    ) {
+        let (min, max) = node.boxes.corners(lane);
+        let run = node.children[lane & 7].run();
+        let ball = run.kind == Store::BALL && run.count == 1;
+        let mut mask = 0;
+        for group in bundle.groups.clone() {
+            let group = group % GROUPS;
+            let (rays, limits) = (&ends.rays[group], &ends.limits[group]);
+            let met = if ball {
+                rays.test_ball(lanes, min, max, ends.ball_pad, limits)
+            } else {
+                rays.test(lanes, min, max, ends.pad, limits)
+            };
+            mask |= met << (8 * group);
+        }
+        mask &= self.active;
+        let mut changed = false;
+        while mask != 0 {
+            let i = mask.trailing_zeros() as usize & (PACKET - 1);
+            mask &= mask - 1;
+            let Some(ray) = self.rays.get(i) else { continue };
+            let before = self.queries[i].limit();
+            let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
+            if flow.is_break() {
+                self.active &= !(1 << i);
+                ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
+                changed = true;
+            } else if self.queries[i].limit() != before {
+                let limit = self.side.limit_of(i, self.queries[i].limit());
+                ends.set(i, limit, bundle.end(i, limit));
+                changed = true;
+            }
+        }
+        if changed {
+            ends.most = greatest(lanes, &ends.depths);
+        }
+    }
+}
+
+/// The rays of a packet on their way, and where they end.
+struct Ends {
+    rays: [EightRays; GROUPS],
+    /// The end of each ray, and that of the beam at the same place.
+    limits: [[f32; 8]; GROUPS],
+    depths: [[f32; 8]; GROUPS],
+    /// The greatest of the latter.
+    most: f32,
+    /// By how much boxes and balls are grown.
+    pad: f32,
+    ball_pad: f32,
+}
+
+impl Ends {
+    #[inline(always)]
+    fn new<L: Lanes>(lanes: L, side: &Side, bundle: &Bundle) -> Self {
+        let far = f64::from(bundle.far);
+        let mut ends = Ends {
+            rays: [EightRays::EMPTY; GROUPS],
+            limits: [[f32::NEG_INFINITY; 8]; GROUPS],
+            depths: [[f32::NEG_INFINITY; 8]; GROUPS],
+            most: 0.0,
+            pad: at_least((far + 1.0) * exp2i(-21) + side.error),
+            ball_pad: at_least((far + 1.0) * exp2i(-18) + side.error),
+        };
+        for group in bundle.groups.clone() {
+            let group = group % GROUPS;
+            ends.rays[group] = EightRays::new(lanes, &side.origin[group], &side.direction[group]);
+            ends.limits[group] = side.limit[group];
+            ends.depths[group] = bundle.ends(lanes, group, &side.limit[group]);
+        }
+        ends.most = greatest(lanes, &ends.depths);
+        ends
+    }
+
+    #[inline(always)]
+    fn set(&mut self, place: usize, limit: f32, depth: f32) {
+        let (group, lane) = (place / 8 % GROUPS, place % 8);
+        (self.limits[group][lane], self.depths[group][lane]) = (limit, depth);
     }
 }
 

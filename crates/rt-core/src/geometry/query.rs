@@ -8,6 +8,8 @@ use core::ops::ControlFlow;
 
 /// A question about a ray, answered by showing it shapes.
 pub(super) trait Query {
+    /// Whether near shapes are best seen first: a hit then spares those behind it.
+    const NEAREST_FIRST: bool = true;
     /// Hits from this parameter on do not matter any more.
     fn limit(&self) -> f64;
     /// Shows it a shape; breaks when nothing more needs to be seen.
@@ -152,6 +154,7 @@ impl Any {
 }
 
 impl Query for Any {
+    const NEAREST_FIRST: bool = false;
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.within.max

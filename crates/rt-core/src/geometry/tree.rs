@@ -1,7 +1,7 @@
 //! The tree of boxes: eight children a node.
 
 use super::store::Run;
-use crate::kernel::Boxes;
+use crate::kernel::{Boxes, Lanes};
 use alloc::vec::Vec;
 
 /// Eight boxes and what they hold: four cache lines.
@@ -14,6 +14,12 @@ pub(super) struct Node {
 
 impl Node {
     pub const EMPTY: Node = Node { boxes: Boxes::EMPTY, children: [Child::NOTHING; 8] };
+
+    /// The children that are leaves, one bit each.
+    #[inline(always)]
+    pub fn leaves<L: Lanes>(&self, lanes: L) -> u32 {
+        lanes.large(self.children.map(|child| child.0))
+    }
 }
 
 /// What a box holds: a node, or a few shapes of one kind.

@@ -77,6 +77,11 @@ impl Lanes for Avx2Lanes {
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
     }
     #[inline(always)]
+    fn large(self, numbers: [u32; 8]) -> u32 {
+        // SAFETY: `self` proves AVX2; the pointer comes from an array of eight u32.
+        unsafe { _mm256_movemask_ps(_mm256_loadu_ps(numbers.as_ptr().cast())) as u32 }
+    }
+    #[inline(always)]
     fn inverse(self, a: __m256) -> __m256 {
         // SAFETY: `self` proves AVX2.
         unsafe {

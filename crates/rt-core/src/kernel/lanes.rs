@@ -33,6 +33,8 @@ pub trait Lanes: Copy {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// The numbers that are at least 2^31, one bit each, the first the lowest.
+    fn large(self, numbers: [u32; 8]) -> u32;
     /// `1 / a`, for |a| < 2^-100 that of 2^-100 with its sign.
     fn inverse(self, a: Self::F) -> Self::F;
     /// The least lane; any of the others when some are NaN.
@@ -159,6 +161,10 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn le(self, a: [f32; 8], b: [f32; 8]) -> u32 {
         (0..8).fold(0, |mask, i| mask | (((a[i] <= b[i]) as u32) << i))
+    }
+    #[inline(always)]
+    fn large(self, numbers: [u32; 8]) -> u32 {
+        (0..8).fold(0, |mask, i| mask | numbers[i] >> 31 << i)
     }
     #[inline(always)]
     fn inverse(self, a: [f32; 8]) -> [f32; 8] {

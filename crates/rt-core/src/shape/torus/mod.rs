@@ -36,34 +36,37 @@ use record::{Direct, Near};
 /// `((major + minor cos v) cos u, (major + minor cos v) sin u, minor sin v)` on all sheets. The own axes: the third
 /// is the axis; the first is the coordinate axis most nearly perpendicular to it (the first of equals), made
 /// perpendicular; the second completes a right-handed frame. For the axis `z` they are the world's.
+// What every hit needs comes first, in few lines of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Torus {
     center: DVec3,
-    major: f64,
-    minor: f64,
-    /// The own axes.
-    frame: [DoubleVector; 3],
-    /// The third of them, rounded.
-    axis: DVec3,
     /// At least `R + r` in the world's unit, and 2^-50 of it, or NaN where squares would leave the range of the exponents.
     outer: f64,
     doubt: f64,
-    /// The power of two of the larger radius: what follows is in units of two to it.
+    /// The power of two of the larger radius: what is called scaled and what follows is in units of two to it.
     scale: i32,
-    major_scaled: f64,
-    minor_scaled: f64,
     /// `R + r`.
     reach: f64,
+    minor_scaled: f64,
+    /// The third of the own axes, rounded.
+    axis: DVec3,
+    /// `R^2 + r^2`.
+    squares: Double,
+    /// `2 R^2`.
+    twice: Double,
     /// `(R - r)^2`, or NaN for a spindle, whose inner sheet is where others have their hole.
     hole: f64,
     /// `(R + r)^2`.
     rim: f64,
-    /// `R^2 + r^2`.
-    squares: Double,
+    major_scaled: f64,
     /// `R^2 - r^2`.
     difference: Double,
-    /// `2 R^2`.
-    twice: Double,
+    /// The radii in the world's unit.
+    major: f64,
+    minor: f64,
+    /// The own axes.
+    frame: [DoubleVector; 3],
 }
 
 impl Torus {
