@@ -110,16 +110,9 @@ impl Plane {
                 *surface = self.surface(rays[i], hits[i]);
                 continue;
             }
-            // Each number goes straight to its place: a record made first and copied would be read before it is written.
             let uv = DVec2::new(u[i], v[i]);
-            surface.t = t[i];
-            surface.point = point[i];
-            surface.local = local[i];
-            surface.object_point = uv.extend(0.0);
-            surface.normal = self.normal;
-            surface.shading_normal = self.normal;
-            surface.coordinates = Coordinates::Known(uv);
-            surface.error = error[i];
+            let (place, coordinates) = (uv.extend(0.0), Coordinates::Known(uv));
+            surface.set(t[i], point[i], local[i], place, self.normal, coordinates, error[i]);
         }
     }
 
