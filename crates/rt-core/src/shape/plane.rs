@@ -104,7 +104,8 @@ impl Plane {
         let (t, error) = (at.t.to_array(), at.radius(point).to_array());
         let (point, local) = (point.to_array(), at.locally().to_array());
         // The lanes bring their own products.
-        let [u, v] = at.lengths::<Dekker>(&self.axes, self.axis).map(|x| x.to_array());
+        let [u, v] = at.lengths::<Dekker>(&self.axes, self.axis);
+        let (u, v) = (u.to_array(), v.to_array());
         for (i, surface) in surfaces.into_iter().enumerate() {
             if sound >> i & 1 == 0 {
                 *surface = self.surface(rays[i], hits[i]);
