@@ -91,7 +91,7 @@ impl<L: Lanes> ScaledFour<L> {
     #[inline(always)]
     pub fn new(lanes: L, rays: [&Ray; 4], anchor: DVec3, unit: i32) -> Self {
         let [a, b, c, d] = rays;
-        let direction = Vector::new(lanes, [a.direction, b.direction, c.direction, d.direction]);
+        let direction = Vector::new(lanes, [&a.direction, &b.direction, &c.direction, &d.direction]);
         let one = direction.x.all(1.0);
         let binade = direction.largest().binade();
         // Powers of two: exact.
@@ -102,7 +102,7 @@ impl<L: Lanes> ScaledFour<L> {
             y: Four::if_less(direction.y.abs(), negligible, zero, direction.y),
             z: Four::if_less(direction.z.abs(), negligible, zero, direction.z),
         };
-        let origin = Vector::new(lanes, [a.origin, b.origin, c.origin, d.origin]);
+        let origin = Vector::new(lanes, [&a.origin, &b.origin, &c.origin, &d.origin]);
         let relative = DoubleVector::difference(origin, Vector::all(one, anchor));
         let relative = relative.scale_exact(one.all(exp2i(-unit)));
         // Zero times a number is zero, unless the number is infinite or NaN.

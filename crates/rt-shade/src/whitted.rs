@@ -202,13 +202,13 @@ impl LightMany<'_, '_> {
         // Places without a hit repeat the last.
         let four = [0, 1, 2, 3].map(|i| hits.get(i).unwrap_or(last));
         let surface = four.map(|hit| &surfaces[hit.number]);
-        let direction = Vector::new(lanes, four.map(|hit| rays[hit.number].direction));
+        let direction = Vector::new(lanes, four.map(|hit| &rays[hit.number].direction));
         let zero = direction.x.all(0.0);
         let direction = direction * (zero.all(1.0) / direction.length());
-        let shading = Vector::new(lanes, surface.map(|surface| surface.shading_normal));
+        let shading = Vector::new(lanes, surface.map(|surface| &surface.shading_normal));
         let away = direction.dot(shading);
         let at = Place {
-            point: Vector::new(lanes, surface.map(|surface| surface.point)),
+            point: Vector::new(lanes, surface.map(|surface| &surface.point)),
             normal: Vector {
                 x: Four::if_less(zero, away, -shading.x, shading.x),
                 y: Four::if_less(zero, away, -shading.y, shading.y),
@@ -216,7 +216,7 @@ impl LightMany<'_, '_> {
             },
             direction,
         };
-        let geometric = Vector::new(lanes, surface.map(|surface| surface.normal));
+        let geometric = Vector::new(lanes, surface.map(|surface| &surface.normal));
         let against = direction.dot(geometric);
         let outside = against.less(zero);
         // As `Departure::ray` begins.

@@ -428,7 +428,7 @@ impl Vectorized for SeenMany<'_> {
                 }
                 continue;
             };
-            let direction = Vector::new(lanes, [a.direction, b.direction, c.direction, d.direction]);
+            let direction = Vector::new(lanes, [&a.direction, &b.direction, &c.direction, &d.direction]);
             let zero = direction.x.all(0.0);
             let largest = direction.largest();
             // Zero times a number is zero, unless the number is infinite or NaN. The point is finite.
@@ -587,7 +587,8 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self, lanes: L) -> [bool; 4] {
             let Blocked(geometry, cube, from) = self;
-            let start = Vector::new(lanes, from.map(|from| from.ray(DVec3::ZERO).0.origin));
+            let start = from.map(|from| from.ray(DVec3::ZERO).0.origin);
+            let start = Vector::new(lanes, start.each_ref());
             let ways = Geometry::four_towards(cube, start);
             core::array::from_fn(|i| {
                 geometry.blocked_on(cube, &ways[i], from[i].object, || from[i], &[], &mut |_| {})
