@@ -1,24 +1,180 @@
 //! Vectors of double-double numbers.
 
 use crate::double::{Double, two_difference, two_sum};
-use crate::kernel::Product;
+use crate::kernel::{Product, Real, Vector};
 use crate::math::sqrt;
 use core::ops::{Add, Sub};
 use glam::DVec3;
 
-/// Three double-double coordinates: about 106 bits each.
+/// Three double-double coordinates: about 106 bits each; or three such in each lane of [`Four`](crate::kernel::Four).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct DoubleVector {
-    pub x: Double,
-    pub y: Double,
-    pub z: Double,
+pub(crate) struct DoubleVector<R = f64> {
+    pub x: Double<R>,
+    pub y: Double<R>,
+    pub z: Double<R>,
 }
 
 /// The square as a product and what is left of it, but for the square of the low part.
 #[inline(always)]
-fn squared<P: Product>(a: Double) -> (f64, f64) {
-    let (p, e) = P::two_product(a.high, a.high);
-    (p, e + 2.0 * (a.high * a.low))
+fn squared<P: Product, R: Real>(a: Double<R>) -> (R, R) {
+    let (p, e) = R::two_product::<P>(a.high, a.high);
+    (p, e + e.all(2.0) * (a.high * a.low))
+}
+
+/// [`DoubleVector::advanced`] along one axis.
+#[inline(always)]
+fn advanced<P: Product, R: Real>(x: Double<R>, d: R, t: Double<R>) -> Double<R> {
+    let (p, e) = R::two_product::<P>(d, t.high);
+    let (s, f) = two_sum(x.high, p);
+    Double::sum(s, f + (x.low + (e + d * t.low)))
+}
+
+/// A term of [`DoubleVector::inner`].
+#[inline(always)]
+fn term<P: Product, R: Real>(a: Double<R>, b: Double<R>) -> (R, R) {
+    let (p, e) = R::two_product::<P>(a.high, b.high);
+    (p, e + (a.high * b.low + a.low * b.high))
+}
+
+/// [`DoubleVector::less`] along one axis.
+#[inline(always)]
+fn less<P: Product, R: Real>(a: Double<R>, b: Double<R>, s: Double<R>) -> Double<R> {
+    let (p, e) = R::two_product::<P>(b.high, s.high);
+    let (d, f) = two_difference(a.high, p);
+    Double::sum(d, (f - e) + (a.low - (b.high * s.low + b.low * s.high)))
+}
+
+/// [`DoubleVector::blend`] along one axis.
+#[inline(always)]
+fn blend<P: Product, R: Real>(a: Double<R>, s: Double<R>, b: Double<R>, t: Double<R>) -> R {
+    let (p, e) = R::two_product::<P>(a.high, s.high);
+    let (q, f) = R::two_product::<P>(b.high, t.high);
+    let (sum, g) = two_sum(p, q);
+    sum + (((e + f) + g) + ((a.high * s.low + a.low * s.high) + (b.high * t.low + b.low * t.high)))
+}
+
+impl<R: Real> DoubleVector<R> {
+    /// The same vector in all lanes, of as many as `like` has.
+    #[inline(always)]
+    pub fn all(like: R, v: &DoubleVector) -> Self {
+        DoubleVector { x: Double::all(like, v.x), y: Double::all(like, v.y), z: Double::all(like, v.z) }
+    }
+
+    /// The exact difference of two points.
+    #[inline(always)]
+    pub fn difference(a: impl Into<Vector<R>>, b: impl Into<Vector<R>>) -> Self {
+        let (a, b) = (a.into(), b.into());
+        DoubleVector {
+            x: Double::difference(a.x, b.x),
+            y: Double::difference(a.y, b.y),
+            z: Double::difference(a.z, b.z),
+        }
+    }
+
+    /// `self + t * d`, within a few 2^-106 of the largest of the terms.
+    #[inline(always)]
+    pub fn advanced<P: Product>(&self, d: impl Into<Vector<R>>, t: Double<R>) -> Self {
+        let d = d.into();
+        DoubleVector {
+            x: advanced::<P, R>(self.x, d.x, t),
+            y: advanced::<P, R>(self.y, d.y, t),
+            z: advanced::<P, R>(self.z, d.z, t),
+        }
+    }
+
+    /// `self + t * d` for a step far smaller than `self`.
+    #[inline(always)]
+    pub fn nudged(self, d: impl Into<Vector<R>>, t: R) -> Self {
+        let d = d.into();
+        DoubleVector {
+            x: Double::sum(self.x.high, self.x.low + d.x * t),
+            y: Double::sum(self.y.high, self.y.low + d.y * t),
+            z: Double::sum(self.z.high, self.z.low + d.z * t),
+        }
+    }
+
+    /// The scalar product, and less work than [`dot`](Self::dot): the high parts without error, their errors and the low
+    /// parts added up in `f64` (Ogita, Rump, Oishi 2005, doi:10.1137/030601818). Errs by less than 2^-99 of the sizes of
+    /// the terms together: eight additions of parts that are below 8 u of those, and the products of low parts.
+    #[inline(always)]
+    pub fn inner<P: Product>(&self, b: &Self) -> Double<R> {
+        let (x, x_low) = term::<P, R>(self.x, b.x);
+        let (y, y_low) = term::<P, R>(self.y, b.y);
+        let (z, z_low) = term::<P, R>(self.z, b.z);
+        let (s, e) = two_sum(x, y);
+        let (s, f) = two_sum(s, z);
+        Double::sum(s, ((x_low + y_low) + z_low) + (e + f))
+    }
+
+    /// `self - b s`: each coordinate within 2^-103 of the larger of the two terms, besides the errors of what is given.
+    #[inline(always)]
+    pub fn less<P: Product>(&self, b: &Self, s: Double<R>) -> Self {
+        DoubleVector {
+            x: less::<P, R>(self.x, b.x, s),
+            y: less::<P, R>(self.y, b.y, s),
+            z: less::<P, R>(self.z, b.z, s),
+        }
+    }
+
+    /// `self s + b t`, each coordinate rounded once, all but.
+    #[inline(always)]
+    pub fn blend<P: Product>(&self, s: Double<R>, b: &Self, t: Double<R>) -> Vector<R> {
+        Vector {
+            x: blend::<P, R>(self.x, s, b.x, t),
+            y: blend::<P, R>(self.y, s, b.y, t),
+            z: blend::<P, R>(self.z, s, b.z, t),
+        }
+    }
+
+    /// `|self|^2 - r^2`: within 2^-100 of `|self|^2 + r^2`.
+    #[inline(always)]
+    pub fn excess_over<P: Product>(&self, r: Double<R>) -> R {
+        let (x, x_low) = squared::<P, R>(self.x);
+        let (y, y_low) = squared::<P, R>(self.y);
+        let (z, z_low) = squared::<P, R>(self.z);
+        let (r, r_low) = squared::<P, R>(r);
+        let (s, s_low) = two_sum(x, y);
+        let (u, u_low) = two_difference(z, r);
+        let (v, v_low) = two_sum(s, u);
+        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low))))
+    }
+
+    /// `|self|^2 - r^2` for a place near the sphere: within 2^-102 of `r^2`, or a unit in the last place.
+    #[inline(always)]
+    pub fn excess<P: Product>(self, r: R) -> R {
+        let (xx, x_low) = R::two_product::<P>(self.x.high, self.x.high);
+        let (yy, y_low) = R::two_product::<P>(self.y.high, self.y.high);
+        let (zz, z_low) = R::two_product::<P>(self.z.high, self.z.high);
+        let (rr, r_low) = R::two_product::<P>(r, r);
+        let (s, s_low) = two_sum(xx, yy);
+        let (u, u_low) = two_difference(zz, rr);
+        let (v, v_low) = two_sum(s, u);
+        let cross = self.x.high * self.x.low + self.y.high * self.y.low + self.z.high * self.z.low;
+        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low)) + cross.all(2.0) * cross))
+    }
+
+    /// The product with a power of two: exact.
+    #[inline(always)]
+    pub fn scale_exact(self, power: R) -> Self {
+        DoubleVector {
+            x: self.x.scale_exact(power),
+            y: self.y.scale_exact(power),
+            z: self.z.scale_exact(power),
+        }
+    }
+
+    /// The leading parts.
+    #[inline(always)]
+    pub fn leading(self) -> Vector<R> {
+        Vector { x: self.x.high, y: self.y.high, z: self.z.high }
+    }
+
+    /// `self + v`, rounded once: within half a unit in the last place and a little.
+    #[inline(always)]
+    pub fn plus(self, v: impl Into<Vector<R>>) -> Vector<R> {
+        let v = v.into();
+        Vector { x: (self.x + v.x).high, y: (self.y + v.y).high, z: (self.z + v.z).high }
+    }
 }
 
 impl DoubleVector {
@@ -28,16 +184,6 @@ impl DoubleVector {
         DoubleVector { x: Double::from(v.x), y: Double::from(v.y), z: Double::from(v.z) }
     }
 
-    /// The exact difference of two points.
-    #[inline(always)]
-    pub fn difference(a: DVec3, b: DVec3) -> Self {
-        DoubleVector {
-            x: Double::difference(a.x, b.x),
-            y: Double::difference(a.y, b.y),
-            z: Double::difference(a.z, b.z),
-        }
-    }
-
     /// `v * s`, exactly.
     #[inline(always)]
     pub fn product<P: Product>(v: DVec3, s: f64) -> Self {
@@ -45,97 +191,6 @@ impl DoubleVector {
             x: Double::product::<P>(v.x, s),
             y: Double::product::<P>(v.y, s),
             z: Double::product::<P>(v.z, s),
-        }
-    }
-
-    /// `self + t * d`, within a few 2^-106 of the largest of the terms.
-    #[inline(always)]
-    pub fn advanced<P: Product>(&self, d: DVec3, t: Double) -> Self {
-        let along = |x: Double, d: f64| {
-            let (p, e) = P::two_product(d, t.high);
-            let (s, f) = two_sum(x.high, p);
-            Double::sum(s, f + (x.low + (e + d * t.low)))
-        };
-        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
-    }
-
-    /// `self + t * d` for a step far smaller than `self`.
-    #[inline(always)]
-    pub fn nudged(self, d: DVec3, t: f64) -> Self {
-        let along = |x: Double, d: f64| Double::sum(x.high, x.low + d * t);
-        DoubleVector { x: along(self.x, d.x), y: along(self.y, d.y), z: along(self.z, d.z) }
-    }
-
-    /// `|self|^2 - r^2` for a place near the sphere: within 2^-102 of `r^2`, or a unit in the last place.
-    #[inline(always)]
-    pub fn excess<P: Product>(self, r: f64) -> f64 {
-        let (xx, x_low) = P::two_product(self.x.high, self.x.high);
-        let (yy, y_low) = P::two_product(self.y.high, self.y.high);
-        let (zz, z_low) = P::two_product(self.z.high, self.z.high);
-        let (rr, r_low) = P::two_product(r, r);
-        let (s, s_low) = two_sum(xx, yy);
-        let (u, u_low) = two_difference(zz, rr);
-        let (v, v_low) = two_sum(s, u);
-        let cross = self.x.high * self.x.low + self.y.high * self.y.low + self.z.high * self.z.low;
-        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low)) + 2.0 * cross))
-    }
-
-    /// The scalar product, and less work than [`dot`](Self::dot): the high parts without error, their errors and the low
-    /// parts added up in `f64` (Ogita, Rump, Oishi 2005, doi:10.1137/030601818). Errs by less than 2^-99 of the sizes of
-    /// the terms together: eight additions of parts that are below 8 u of those, and the products of low parts.
-    #[inline(always)]
-    pub fn inner<P: Product>(&self, b: &DoubleVector) -> Double {
-        let term = |a: Double, b: Double| {
-            let (p, e) = P::two_product(a.high, b.high);
-            (p, e + (a.high * b.low + a.low * b.high))
-        };
-        let ((x, x_low), (y, y_low), (z, z_low)) = (term(self.x, b.x), term(self.y, b.y), term(self.z, b.z));
-        let (s, e) = two_sum(x, y);
-        let (s, f) = two_sum(s, z);
-        Double::sum(s, ((x_low + y_low) + z_low) + (e + f))
-    }
-
-    /// `self - b s`: each coordinate within 2^-103 of the larger of the two terms, besides the errors of what is given.
-    #[inline(always)]
-    pub fn less<P: Product>(&self, b: &DoubleVector, s: Double) -> DoubleVector {
-        let along = |a: Double, b: Double| {
-            let (p, e) = P::two_product(b.high, s.high);
-            let (d, f) = two_difference(a.high, p);
-            Double::sum(d, (f - e) + (a.low - (b.high * s.low + b.low * s.high)))
-        };
-        DoubleVector { x: along(self.x, b.x), y: along(self.y, b.y), z: along(self.z, b.z) }
-    }
-
-    /// `self s + b t`, each coordinate rounded once, all but.
-    #[inline(always)]
-    pub fn blend<P: Product>(&self, s: Double, b: &DoubleVector, t: Double) -> DVec3 {
-        let along = |a: Double, b: Double| {
-            let (p, e) = P::two_product(a.high, s.high);
-            let (q, f) = P::two_product(b.high, t.high);
-            let (sum, g) = two_sum(p, q);
-            sum + (((e + f) + g) + ((a.high * s.low + a.low * s.high) + (b.high * t.low + b.low * t.high)))
-        };
-        DVec3::new(along(self.x, b.x), along(self.y, b.y), along(self.z, b.z))
-    }
-
-    /// `|self|^2 - r^2`: within 2^-100 of `|self|^2 + r^2`.
-    #[inline(always)]
-    pub fn excess_over<P: Product>(&self, r: Double) -> f64 {
-        let ((x, x_low), (y, y_low), (z, z_low), (r, r_low)) =
-            (squared::<P>(self.x), squared::<P>(self.y), squared::<P>(self.z), squared::<P>(r));
-        let (s, s_low) = two_sum(x, y);
-        let (u, u_low) = two_difference(z, r);
-        let (v, v_low) = two_sum(s, u);
-        v + (v_low + ((s_low + u_low) + ((x_low + y_low) + (z_low - r_low))))
-    }
-
-    /// The product with a power of two: exact.
-    #[inline(always)]
-    pub fn scale_exact(self, power: f64) -> Self {
-        DoubleVector {
-            x: self.x.scale_exact(power),
-            y: self.y.scale_exact(power),
-            z: self.z.scale_exact(power),
         }
     }
 
@@ -167,7 +222,7 @@ impl DoubleVector {
     #[inline(always)]
     pub fn length<P: Product>(&self) -> Double {
         let ((x, x_low), (y, y_low), (z, z_low)) =
-            (squared::<P>(self.x), squared::<P>(self.y), squared::<P>(self.z));
+            (squared::<P, f64>(self.x), squared::<P, f64>(self.y), squared::<P, f64>(self.z));
         let (s, s_low) = two_sum(x, y);
         let (s, z_s) = two_sum(s, z);
         let low = (s_low + z_s) + ((x_low + y_low) + z_low);
@@ -184,22 +239,22 @@ impl DoubleVector {
     /// `self + v`, rounded once: within half a unit in the last place and a little.
     #[inline(always)]
     pub fn plus_f64(self, v: DVec3) -> DVec3 {
-        DVec3::new((self.x + v.x).high, (self.y + v.y).high, (self.z + v.z).high)
+        self.plus(v).into()
     }
 }
 
-impl Add for DoubleVector {
-    type Output = DoubleVector;
+impl<R: Real> Add for DoubleVector<R> {
+    type Output = Self;
     #[inline(always)]
-    fn add(self, b: DoubleVector) -> DoubleVector {
+    fn add(self, b: Self) -> Self {
         DoubleVector { x: self.x + b.x, y: self.y + b.y, z: self.z + b.z }
     }
 }
 
-impl Sub for DoubleVector {
-    type Output = DoubleVector;
+impl<R: Real> Sub for DoubleVector<R> {
+    type Output = Self;
     #[inline(always)]
-    fn sub(self, b: DoubleVector) -> DoubleVector {
+    fn sub(self, b: Self) -> Self {
         DoubleVector { x: self.x - b.x, y: self.y - b.y, z: self.z - b.z }
     }
 }
@@ -262,7 +317,7 @@ mod tests {
                 assert!(off <= exp2i(-101) * size, "dot {a:?} {b:?}");
 
                 let less = coordinates(&a.less::<P>(&b, s));
-                let blend = a.blend::<P>(s, &b, t).to_array();
+                let blend = DVec3::from(a.blend::<P>(s, &b, t)).to_array();
                 let (d, step) = (b.high(), exp2i(-30) * t.high);
                 let advanced = coordinates(&a.advanced::<P>(d, s));
                 let nudged = coordinates(&a.nudged(d, step));

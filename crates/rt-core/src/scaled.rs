@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
+use crate::kernel::{Four, Lanes, Real, Vector};
 use crate::math::{exp2i, exponent};
 use crate::{Hit, Interval, Ray};
 use glam::DVec3;
@@ -76,6 +77,45 @@ impl ScaledRay {
     }
 }
 
+/// Four rays as [`ScaledRay`] has them.
+pub(crate) struct ScaledFour<L: Lanes> {
+    pub relative: DoubleVector<Four<L>>,
+    pub direction: Vector<Four<L>>,
+    /// Two to the power of [`ScaledRay::power`].
+    pub power: Four<L>,
+    /// In which lanes that is so: not those of rays that are not valid, start far away, or have directions of extreme length.
+    pub sound: u32,
+}
+
+impl<L: Lanes> ScaledFour<L> {
+    #[inline(always)]
+    pub fn new(lanes: L, rays: [&Ray; 4], anchor: DVec3, unit: i32) -> Self {
+        let [a, b, c, d] = rays;
+        let direction = Vector::new(lanes, [&a.direction, &b.direction, &c.direction, &d.direction]);
+        let one = direction.x.all(1.0);
+        let binade = direction.largest().binade();
+        // Powers of two: exact.
+        let direction = direction * (one / binade);
+        let (zero, negligible) = (one.all(0.0), one.all(exp2i(-160)));
+        let direction = Vector {
+            x: Four::if_less(direction.x.abs(), negligible, zero, direction.x),
+            y: Four::if_less(direction.y.abs(), negligible, zero, direction.y),
+            z: Four::if_less(direction.z.abs(), negligible, zero, direction.z),
+        };
+        let origin = Vector::new(lanes, [&a.origin, &b.origin, &c.origin, &d.origin]);
+        let relative = DoubleVector::difference(origin, Vector::all(one, anchor));
+        let relative = relative.scale_exact(one.all(exp2i(-unit)));
+        // Zero times a number is zero, unless the number is infinite or NaN.
+        let (o, d) = (relative.leading(), direction);
+        let nothing = (o.x + o.y + o.z) * zero + (d.x + d.y + d.z) * zero;
+        let sound = one.all(exp2i(-300)).less(binade)
+            & binade.less(one.all(exp2i(300)))
+            & o.largest().less(one.all(exp2i(900)))
+            & nothing.less(one);
+        ScaledFour { relative, direction, power: one.all(exp2i(unit)) / binade, sound }
+    }
+}
+
 /// The largest absolute value of the components.
 #[inline(always)]
 pub(crate) fn largest(v: DVec3) -> f64 {
@@ -132,8 +172,14 @@ pub(crate) fn admit_exit(within: Interval, t: f64, part: u32, root: u32) -> Opti
 /// is subnormal).
 #[inline(always)]
 pub(crate) fn error_radius(point: DVec3, along: f64) -> f64 {
+    radius_about(point.into(), along)
+}
+
+/// [`error_radius`], for any lanes.
+#[inline(always)]
+pub(crate) fn radius_about<R: Real>(point: Vector<R>, along: R) -> R {
     // sqrt(3) < 1.75, and an ulp of slack.
-    largest(point) * (1.75 * exp2i(-53)) + f64::from_bits(4) + along
+    point.largest() * along.all(1.75 * exp2i(-53)) + along.all(f64::from_bits(4)) + along
 }
 
 /// How far a place found from a discriminant in double-double can be from the true one, in units of the shape's

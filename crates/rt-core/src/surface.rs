@@ -37,7 +37,7 @@ pub struct Surface {
     /// The unit normal that shading uses: differs from `normal` on a smooth triangle only.
     pub shading_normal: DVec3,
     /// What the texture coordinates are made of.
-    pub(crate) coordinates: Coordinates,
+    coordinates: Coordinates,
     /// The error radius: the true point lies within this distance of `point`.
     pub error: f64,
 }
@@ -59,6 +59,30 @@ impl Surface {
             coordinates: Coordinates::Known(DVec2::ZERO),
             error,
         }
+    }
+
+    /// Puts another record in its place, each number by itself: a record that is made first and copied in wider pieces is
+    /// read before it is written.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn set(
+        &mut self,
+        t: f64,
+        point: DVec3,
+        local: DVec3,
+        object_point: DVec3,
+        normal: DVec3,
+        coordinates: Coordinates,
+        error: f64,
+    ) {
+        self.t = t;
+        self.point = point;
+        self.local = local;
+        self.object_point = object_point;
+        self.normal = normal;
+        self.shading_normal = normal;
+        self.coordinates = coordinates;
+        self.error = error;
     }
 
     /// The same record with these texture coordinates.

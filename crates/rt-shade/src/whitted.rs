@@ -136,7 +136,7 @@ impl Gift {
 /// A point that a ray hit, with all that spawned rays need.
 struct Vertex<'s> {
     found: Found,
-    surface: Surface,
+    surface: &'s Surface,
     /// The unit direction of the ray that arrived.
     direction: DVec3,
     /// The shading normal, on the side of arrival.
@@ -202,13 +202,13 @@ impl LightMany<'_, '_> {
         // Places without a hit repeat the last.
         let four = [0, 1, 2, 3].map(|i| hits.get(i).unwrap_or(last));
         let surface = four.map(|hit| &surfaces[hit.number]);
-        let direction = Vector::new(lanes, four.map(|hit| rays[hit.number].direction));
+        let direction = Vector::new(lanes, four.map(|hit| &rays[hit.number].direction));
         let zero = direction.x.all(0.0);
         let direction = direction * (zero.all(1.0) / direction.length());
-        let shading = Vector::new(lanes, surface.map(|surface| surface.shading_normal));
+        let shading = Vector::new(lanes, surface.map(|surface| &surface.shading_normal));
         let away = direction.dot(shading);
         let at = Place {
-            point: Vector::new(lanes, surface.map(|surface| surface.point)),
+            point: Vector::new(lanes, surface.map(|surface| &surface.point)),
             normal: Vector {
                 x: Four::if_less(zero, away, -shading.x, shading.x),
                 y: Four::if_less(zero, away, -shading.y, shading.y),
@@ -216,7 +216,7 @@ impl LightMany<'_, '_> {
             },
             direction,
         };
-        let geometric = Vector::new(lanes, surface.map(|surface| surface.normal));
+        let geometric = Vector::new(lanes, surface.map(|surface| &surface.normal));
         let against = direction.dot(geometric);
         let outside = against.less(zero);
         // As `Departure::ray` begins.
@@ -287,7 +287,7 @@ struct Spawn<'a, 's> {
     local: Color,
     ray: &'a Ray,
     found: Found,
-    surface: Surface,
+    surface: &'a Surface,
 }
 
 impl Task for Spawn<'_, '_> {
@@ -361,7 +361,8 @@ impl<'s> Tracer<'s> {
 
     #[inline(always)]
     fn shade_here(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
-        let vertex = self.vertex(ray, found, self.scene.geometry.surface(ray, found));
+        let surface = self.scene.geometry.surface(ray, found);
+        let vertex = self.vertex(ray, found, &surface);
         let local = self.local(&vertex);
         self.with_spawned(local, &vertex, depth, weight)
     }
@@ -423,7 +424,7 @@ impl<'s> Tracer<'s> {
         self.queues = queues;
         for First { number, found } in hits {
             if self.spawns(self.material(found), 1) {
-                let (local, ray, surface) = (colors[number], &rays[number], surfaces[number]);
+                let (local, ray, surface) = (colors[number], &rays[number], &surfaces[number]);
                 colors[number] = run(Spawn { tracer: self, local, ray, found, surface });
             }
         }
@@ -438,7 +439,10 @@ impl<'s> Tracer<'s> {
 
     /// A hit and all that spawned rays need.
     #[inline(always)]
-    fn vertex(&self, ray: &Ray, found: Found, surface: Surface) -> Vertex<'s> {
+    fn vertex<'a>(&self, ray: &Ray, found: Found, surface: &'a Surface) -> Vertex<'a>
+    where
+        's: 'a,
+    {
         let direction = ray.direction.normalize();
         let facing = if direction.dot(surface.shading_normal) > 0.0 {
             -surface.shading_normal
@@ -500,7 +504,7 @@ impl<'s> Tracer<'s> {
     #[inline(always)]
     fn local(&mut self, v: &Vertex) -> Color {
         let scene = self.scene;
-        let Some(body) = self.body(v.found, &v.surface) else { return Color::BLACK };
+        let Some(body) = self.body(v.found, v.surface) else { return Color::BLACK };
         let mut sum = scene.ambient * body;
         let from = v.surface.departure(v.found.object, v.found.hit, v.side);
         let at =

@@ -267,12 +267,19 @@ impl Geometry {
         }
         let square = ray.direction.dot(ray.direction);
         let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
-        self.nearest_seen(cube, ray, within, cube.windows.of(ray.direction), length, cube.seen(ray.direction))
+        let mut found = None;
+        let window = cube.windows.of(ray.direction);
+        self.nearest_seen(cube, ray, within, window, length, cube.seen(ray.direction), &mut found);
+        found
     }
 
     /// The nearest of the objects that a ray may meet. The margin of the distances covers the rounding of the direction's
     /// length, which is infinite where squares leave their range.
+    ///
+    /// An answer goes from registers to its place. Returned or chosen first, it would be written in three parts and read back
+    /// as two, which waits for all three.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     fn nearest_seen(
         &self,
         cube: &DirectionCube,
@@ -281,7 +288,8 @@ impl Geometry {
         window: Window,
         length: f64,
         mut rest: u64,
-    ) -> Option<Found> {
+        found: &mut Option<Found>,
+    ) {
         let mut nearest = Nearest::new(within, window, None);
         while rest != 0 {
             let place = rest.trailing_zeros() as usize;
@@ -298,9 +306,9 @@ impl Geometry {
                 let _ = nearest.visit(ray, object, shape);
             }
         }
-        match nearest.contested() {
-            None => nearest.best(),
-            Some(limit) => self.decide(ray, within, limit, None),
+        *found = nearest.best();
+        if let Some(limit) = nearest.contested() {
+            *found = self.decide(ray, within, limit, None);
         }
     }
 
@@ -428,7 +436,7 @@ impl Vectorized for SeenMany<'_> {
                 }
                 continue;
             };
-            let direction = Vector::new(lanes, [a.direction, b.direction, c.direction, d.direction]);
+            let direction = Vector::new(lanes, [&a.direction, &b.direction, &c.direction, &d.direction]);
             let zero = direction.x.all(0.0);
             let largest = direction.largest();
             // Zero times a number is zero, unless the number is infinite or NaN. The point is finite.
@@ -438,14 +446,11 @@ impl Vectorized for SeenMany<'_> {
             let square = direction.dot(direction);
             let length = square.sqrt().to_array();
             let (square, seen) = (square.to_array(), cube.seen_four(direction));
-            // An answer goes from registers to its place. Returned by a call it would be written in three parts and read
-            // back as two, which waits for all three.
             for (i, ((ray, within), found)) in rays.iter().zip(within).zip(found).enumerate() {
-                *found = None;
                 if valid >> i & 1 == 1 && within.min >= 0.0 && within.min < within.max {
                     let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
-                    *found = geometry.nearest_seen(cube, ray, *within, windows[i], length, seen[i]);
-                } else if !(within.min >= 0.0) {
+                    geometry.nearest_seen(cube, ray, *within, windows[i], length, seen[i], found);
+                } else {
                     *found = geometry.nearest(ray, *within);
                 }
             }
@@ -587,7 +592,8 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self, lanes: L) -> [bool; 4] {
             let Blocked(geometry, cube, from) = self;
-            let start = Vector::new(lanes, from.map(|from| from.ray(DVec3::ZERO).0.origin));
+            let start = from.map(|from| from.ray(DVec3::ZERO).0.origin);
+            let start = Vector::new(lanes, start.each_ref());
             let ways = Geometry::four_towards(cube, start);
             core::array::from_fn(|i| {
                 geometry.blocked_on(cube, &ways[i], from[i].object, || from[i], &[], &mut |_| {})

@@ -30,10 +30,19 @@ impl Vectorized for RecordMany<'_> {
                 && a.object == b.object
                 && a.object == c.object
                 && a.object == d.object
-                && let Some(Shape::Plane(plane)) = geometry.shapes.get(a.object as usize)
+                && let Some(shape) = geometry.shapes.get(a.object as usize)
             {
-                let hits = [a.hit, b.hit, c.hit, d.hit];
-                plane.surface_four(lanes, [ra, rb, rc, rd], hits, [sa, sb, sc, sd]);
+                let (rays, hits) = ([ra, rb, rc, rd], [a.hit, b.hit, c.hit, d.hit]);
+                match shape {
+                    Shape::Plane(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
+                    Shape::Cylinder(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
+                    Shape::Cone(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
+                    _ => {
+                        for ((surface, ray), hit) in surfaces.iter_mut().zip(rays).zip(hits) {
+                            *surface = shape.surface(ray, hit);
+                        }
+                    }
+                }
                 continue;
             }
             for ((found, ray), surface) in found.iter().zip(rays).zip(surfaces) {

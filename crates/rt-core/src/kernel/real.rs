@@ -170,9 +170,9 @@ impl From<Vector<f64>> for DVec3 {
 }
 
 impl<L: Lanes> Vector<Four<L>> {
-    /// One vector in each lane.
+    /// One vector in each lane. From where they are: copies would be written in other pieces than they are read in.
     #[inline(always)]
-    pub fn new(lanes: L, [a, b, c, d]: [DVec3; 4]) -> Self {
+    pub fn new(lanes: L, [a, b, c, d]: [&DVec3; 4]) -> Self {
         Vector {
             x: Four::new(lanes, [a.x, b.x, c.x, d.x]),
             y: Four::new(lanes, [a.y, b.y, c.y, d.y]),

@@ -3,6 +3,7 @@
 //! The arithmetic is in the private module `frustum`.
 
 use super::frustum::Frustum;
+use crate::kernel::Lanes;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
@@ -98,6 +99,18 @@ impl Cone {
         let f = &self.frustum;
         let radii = [f.base_radius * by.scale(), f.top_radius * by.scale()];
         Self::checked(by.point(f.base), radii, by.point(f.top), f.closed)
+    }
+
+    /// The records of four hits: [`Primitive::surface`] for each.
+    #[inline(always)]
+    pub(crate) fn surface_four<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        self.frustum.surface_four(lanes, rays, hits, surfaces);
     }
 }
 

@@ -3,6 +3,7 @@
 //! The arithmetic is that of the cone with equal radii: see the private module `frustum`.
 
 use super::frustum::Frustum;
+use crate::kernel::Lanes;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use glam::DVec3;
 
@@ -74,6 +75,18 @@ impl Cylinder {
     pub fn transformed(&self, by: &Similarity) -> Result<Self, Error> {
         let f = &self.frustum;
         Self::checked(by.point(f.base), by.point(f.top), f.base_radius * by.scale(), f.closed)
+    }
+
+    /// The records of four hits: [`Primitive::surface`] for each.
+    #[inline(always)]
+    pub(crate) fn surface_four<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        self.frustum.surface_four(lanes, rays, hits, surfaces);
     }
 }
 

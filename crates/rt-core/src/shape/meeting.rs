@@ -280,8 +280,8 @@ fn along<P: Product, R: Real>(t: Double<R>, d: R, w: Double<R>) -> Double<R> {
 #[inline(always)]
 pub(super) fn four<L: Lanes>(piece: &impl Piece, lanes: L, rays: [&Ray; 4]) -> (Meeting<Four<L>>, u32) {
     let plane = piece.plane();
-    let d = Vector::new(lanes, rays.map(|ray| ray.direction));
-    let w = difference(Vector::all(d.x, plane.anchor), Vector::new(lanes, rays.map(|ray| ray.origin)));
+    let d = Vector::new(lanes, rays.map(|ray| &ray.direction));
+    let w = difference(Vector::all(d.x, plane.anchor), Vector::new(lanes, rays.map(|ray| &ray.origin)));
     // The lanes bring their own products.
     let (Place { t, local, error }, sound) = place::<Dekker, Four<L>>(&plane, plane.offset, &w, d);
     (Meeting { t: t.high, local, power: 0, error }, sound)

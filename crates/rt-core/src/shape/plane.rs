@@ -104,22 +104,16 @@ impl Plane {
         let (t, error) = (at.t.to_array(), at.radius(point).to_array());
         let (point, local) = (point.to_array(), at.locally().to_array());
         // The lanes bring their own products.
-        let [u, v] = at.lengths::<Dekker>(&self.axes, self.axis).map(|x| x.to_array());
+        let [u, v] = at.lengths::<Dekker>(&self.axes, self.axis);
+        let (u, v) = (u.to_array(), v.to_array());
         for (i, surface) in surfaces.into_iter().enumerate() {
             if sound >> i & 1 == 0 {
                 *surface = self.surface(rays[i], hits[i]);
                 continue;
             }
-            // Each number goes straight to its place: a record made first and copied would be read before it is written.
             let uv = DVec2::new(u[i], v[i]);
-            surface.t = t[i];
-            surface.point = point[i];
-            surface.local = local[i];
-            surface.object_point = uv.extend(0.0);
-            surface.normal = self.normal;
-            surface.shading_normal = self.normal;
-            surface.coordinates = Coordinates::Known(uv);
-            surface.error = error[i];
+            let (place, coordinates) = (uv.extend(0.0), Coordinates::Known(uv));
+            surface.set(t[i], point[i], local[i], place, self.normal, coordinates, error[i]);
         }
     }
 

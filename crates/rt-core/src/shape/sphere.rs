@@ -127,10 +127,13 @@ impl Sphere {
         }
     }
 
-    /// The exit of a ray from the inside that `f64` cannot tell.
+    /// The exit of a ray from the inside that the discriminant does not tell.
     #[cold]
     #[inline(never)]
     fn exit_in_doubt(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        if let Rough::Span([_, leave]) = self.rough(ray) {
+            return admit_exit(within, leave.t, 0, 1);
+        }
         if !ray.is_valid() {
             return None;
         }
@@ -478,8 +481,8 @@ impl Primitive for Sphere {
             return None;
         }
         // Not the exact root: the surface record refines it, as it does that of any hit.
-        if let Rough::Span([_, leave]) = self.rough(ray) {
-            return admit_exit(within, leave.t, 0, 1);
+        if let Line::Chord(chord) = line(self.square, ray.origin - self.center, ray.direction) {
+            return admit_exit(within, chord.leave, 0, 1);
         }
         self.exit_in_doubt(ray, within)
     }

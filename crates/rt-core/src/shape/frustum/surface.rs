@@ -4,9 +4,9 @@ use super::line::{FindLine, quotient};
 use super::{BASE, Frustum, TOP};
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
-use crate::kernel::{self, Product, Task};
+use crate::kernel::{self, Dekker, Four, Lanes, Product, Real, Task, Vector};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{ScaledRay, error_radius, largest, times_power, uncertainty};
+use crate::scaled::{ScaledFour, ScaledRay, largest, radius_about, times_power, uncertainty};
 use crate::surface::Coordinates;
 use crate::{Hit, Ray, Surface};
 use glam::{DVec2, DVec3};
@@ -18,6 +18,47 @@ impl Frustum {
             return Surface::new(hit.t(), self.base, DVec3::ZERO, self.axis.high(), 0.0);
         };
         kernel::run(Record(FindSurface { frustum: self, ray: &scaled, hit }))
+    }
+
+    /// The records of four hits: [`surface`](Frustum::surface) for each.
+    #[inline(always)]
+    pub fn surface_four<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        if hits.iter().any(|hit| hit.part() == BASE || hit.part() == TOP) {
+            for (i, surface) in surfaces.into_iter().enumerate() {
+                *surface = self.surface(rays[i], hits[i]);
+            }
+            return;
+        }
+        let ScaledFour { relative, direction, power, sound } =
+            ScaledFour::new(lanes, rays, self.base, self.unit);
+        let [a, b, c, d] = hits;
+        let t = Four::new(lanes, [a.t(), b.t(), c.t(), d.t()]) / power;
+        let side = |hit: Hit| if hit.root() & 1 == 0 { -1.0 } else { 1.0 };
+        let side = Four::new(lanes, [side(a), side(b), side(c), side(d)]);
+        // The lanes bring their own products.
+        let line = SideLine::new(self, &relative, direction, side);
+        let step = line.step::<Dekker>(self, Double { high: t, low: t.all(0.0) });
+        let sound = sound & line.sound(self, t) & step.sound & step.small;
+        let Finished { point, local, error, across, object_point } = Finished::new(self, &step.found);
+        let v = (step.found.z / t.all(self.height.high)).to_array();
+        let (t, error) = ((step.found.t.high * power).to_array(), error.to_array());
+        let (point, local, object_point) = (point.to_array(), local.to_array(), object_point.to_array());
+        let normal = step.found.normal.to_array();
+        let (x, y) = (across[0].to_array(), across[1].to_array());
+        for (i, surface) in surfaces.into_iter().enumerate() {
+            if sound >> i & 1 == 0 {
+                *surface = self.surface(rays[i], hits[i]);
+                continue;
+            }
+            let coordinates = Coordinates::Side(DVec2::new(x[i], y[i]), v[i].clamp(0.0, 1.0));
+            surface.set(t[i], point[i], local[i], object_point[i], normal[i], coordinates, error[i]);
+        }
     }
 }
 
@@ -33,25 +74,43 @@ impl Task for Record<'_> {
             Some(found) => found,
             None => carefully(self.0),
         };
-        let scale = exp2i(f.unit);
-        let local = found.local.scale_exact(scale);
-        let point = local.plus_f64(f.base);
-        let at = found.local.high();
-        let (x, y) = (at.dot(f.first), at.dot(f.second));
+        let Finished { point, local, error, across: [x, y], object_point } = Finished::new(f, &found);
         let v = match hit.part() {
             BASE => 0.0,
             TOP => 1.0,
             _ => (found.z / f.height.high).clamp(0.0, 1.0),
         };
-        Surface::new(
-            ray.unscale(found.t).high,
+        Surface::new(ray.unscale(found.t).high, point.into(), local.into(), found.normal.into(), error)
+            .with_coordinates(Coordinates::Side(DVec2::new(x, y), v))
+            .with_object_point(object_point.into())
+    }
+}
+
+/// What a record says of a place, in the units of the world.
+struct Finished<R> {
+    point: Vector<R>,
+    local: Vector<R>,
+    error: R,
+    /// The place across the axis, in units of the frustum's size.
+    across: [R; 2],
+    object_point: Vector<R>,
+}
+
+impl<R: Real> Finished<R> {
+    #[inline(always)]
+    fn new(f: &Frustum, found: &Refined<R>) -> Self {
+        let scale = found.z.all(exp2i(f.unit));
+        let local = found.local.scale_exact(scale);
+        let point = local.plus(Vector::all(scale, f.base));
+        let at = found.local.leading();
+        let (x, y) = (at.dot(Vector::all(scale, f.first)), at.dot(Vector::all(scale, f.second)));
+        Finished {
             point,
-            local.high(),
-            found.normal,
-            error_radius(point, scale * found.error),
-        )
-        .with_coordinates(Coordinates::Side(DVec2::new(x, y), v))
-        .with_object_point(DVec3::new(x, y, found.z) * scale)
+            local: local.leading(),
+            error: radius_about(point, scale * found.error),
+            across: [x, y],
+            object_point: Vector { x, y, z: found.z } * scale,
+        }
     }
 }
 
@@ -68,13 +127,13 @@ struct FindSurface<'a> {
     hit: Hit,
 }
 
-struct Refined {
-    t: Double,
-    local: DoubleVector,
-    normal: DVec3,
-    z: f64,
+struct Refined<R = f64> {
+    t: Double<R>,
+    local: DoubleVector<R>,
+    normal: Vector<R>,
+    z: R,
     /// How far the true crossing can be from `local`.
-    error: f64,
+    error: R,
 }
 
 impl Task for FindSurface<'_> {
@@ -95,7 +154,8 @@ impl Task for FindSurface<'_> {
         if hit.part() == BASE || hit.part() == TOP {
             let axis = f.axis.high();
             let (normal, z) = if hit.part() == BASE { (-axis, 0.0) } else { (axis, f.height.high) };
-            return Refined { t, local, normal, z, error: uncertainty(line.z_growth.high.abs()) };
+            let error = uncertainty(line.z_growth.high.abs());
+            return Refined { t, local, normal: normal.into(), z, error };
         }
         let z = f.axis.dot::<P>(local);
         let along = f.axis.mul::<P>(z);
@@ -133,7 +193,7 @@ impl Task for FindSurface<'_> {
         if distance.high <= error && sense * normal.dot(ray.direction) < 0.0 && across != DVec3::ZERO {
             normal = slanted(DoubleVector::from(across.normalize() * sense));
         }
-        Refined { t, local, normal, z: z.high, error }
+        Refined { t, local, normal: normal.into(), z: z.high, error }
     }
 }
 
@@ -166,43 +226,94 @@ impl FindSurface<'_> {
                 return None;
             }
             t = Double::sum(t.high, change);
-            return Some(Refined { t, local: p.nudged(d, change), normal, z: height.high, error });
+            let (local, normal) = (p.nudged(d, change), normal.into());
+            return Some(Refined { t, local, normal, z: height.high, error });
         }
-        // A parameter far below the size asks for more digits of the place than the size does.
-        if !(f.slope.high.abs() < 8.0 && t.high.abs() > exp2i(-8)) {
+        let side = if hit.root() & 1 == 0 { -1.0 } else { 1.0 };
+        let line = SideLine::new(f, &ray.relative, d.into(), side);
+        if line.sound(f, t.high) == 0 {
             return None;
         }
-        let across = d - axis * z_growth;
-        let e1 = f.slope.high * z_growth;
-        let curvature = (across.dot(across) - e1 * e1).abs();
-        let side = if hit.root() & 1 == 0 { -1.0 } else { 1.0 };
-        let base_radius = f.base_radius * exp2i(-f.unit);
         for _ in 0..2 {
-            let p = ray.relative.advanced::<P>(d, t);
-            let z = f.axis.inner::<P>(&p);
-            let away = p.less::<P>(&f.axis, z);
-            let radius = f.slope.mul::<P>(z) + base_radius;
-            let q = side * (away.high().dot(across) - radius.high * e1);
-            if !(q > exp2i(-22) * far && radius.high > exp2i(-16)) {
+            let step = line.step::<P>(f, t);
+            if step.sound == 0 {
                 return None;
             }
-            // Divisions before the long sum that they need not wait for.
-            let per_excess = -0.5 * side / q;
-            let inverse = 1.0 / radius.high;
-            let change = away.excess_over::<P>(radius) * per_excess;
-            t = Double::sum(t.high, t.low + change);
-            let size = change.abs();
-            if size * curvature < exp2i(-36) * q && size < exp2i(-36) * q {
-                let away = away.nudged(across, change);
-                // What the step does to the radius is below 2^-17 of it: its square vanishes.
-                let mut part = f.radial.div_with::<P>(radius, inverse);
-                part.low -= part.high * (e1 * change * inverse);
-                let normal = away.blend::<P>(part, &f.axis, f.axial);
-                let z = (z + z_growth * change).high;
-                return Some(Refined { t, local: p.nudged(d, change), normal, z, error });
+            if step.small != 0 {
+                return Some(step.found);
             }
+            t = step.found.t;
         }
         None
+    }
+}
+
+/// A line, and which of its crossings with the side is looked for.
+struct SideLine<'a, R> {
+    relative: &'a DoubleVector<R>,
+    d: Vector<R>,
+    far: R,
+    /// Minus one where it enters, plus one where it leaves.
+    side: R,
+    z_growth: R,
+    across: Vector<R>,
+    e1: R,
+    curvature: R,
+}
+
+/// A step of Newton's method: see [`FindSurface::newton`].
+struct Step<R> {
+    found: Refined<R>,
+    /// In which lanes the derivative is large enough.
+    sound: u32,
+    /// In which lanes no more steps are needed.
+    small: u32,
+}
+
+impl<'a, R: Real> SideLine<'a, R> {
+    #[inline(always)]
+    fn new(f: &Frustum, relative: &'a DoubleVector<R>, d: Vector<R>, side: R) -> Self {
+        let axis = Vector::all(side, f.axis.high());
+        let z_growth = axis.dot(d);
+        let across = d - axis * z_growth;
+        let e1 = side.all(f.slope.high) * z_growth;
+        let curvature = (across.dot(across) - e1 * e1).abs();
+        let far = relative.leading().largest() + side.all(1.0);
+        SideLine { relative, d, far, side, z_growth, across, e1, curvature }
+    }
+
+    /// In which lanes steps from this parameter may do: one far below the size asks for more digits of the place than the
+    /// size does.
+    #[inline(always)]
+    fn sound(&self, f: &Frustum, t: R) -> u32 {
+        t.all(f.slope.high.abs()).less(t.all(8.0)) & t.all(exp2i(-8)).less(t.abs())
+    }
+
+    #[inline(always)]
+    fn step<P: Product>(&self, f: &Frustum, t: Double<R>) -> Step<R> {
+        let SideLine { relative, d, far, side, z_growth, across, e1, curvature } = *self;
+        let axis = DoubleVector::all(side, &f.axis);
+        let p = relative.advanced::<P>(d, t);
+        let z = axis.inner::<P>(&p);
+        let away = p.less::<P>(&axis, z);
+        let radius = Double::all(side, f.slope).mul::<P>(z) + side.all(f.base_radius * exp2i(-f.unit));
+        let q = side * (away.leading().dot(across) - radius.high * e1);
+        let sound = (side.all(exp2i(-22)) * far).less(q) & side.all(exp2i(-16)).less(radius.high);
+        // Divisions before the long sum that they need not wait for.
+        let per_excess = side.all(-0.5) * side / q;
+        let inverse = side.all(1.0) / radius.high;
+        let change = away.excess_over::<P>(radius) * per_excess;
+        let t = Double::sum(t.high, t.low + change);
+        let (size, most) = (change.abs(), side.all(exp2i(-36)) * q);
+        let small = (size * curvature).less(most) & size.less(most);
+        let away = away.nudged(across, change);
+        // What the step does to the radius is below 2^-17 of it: its square vanishes.
+        let mut part = Double::all(side, f.radial).div_with::<P>(radius, inverse);
+        part.low = part.low - part.high * (e1 * change * inverse);
+        let normal = away.blend::<P>(part, &axis, Double::all(side, f.axial));
+        let z = (z + z_growth * change).high;
+        let found = Refined { t, local: p.nudged(d, change), normal, z, error: side.all(exp2i(-70)) };
+        Step { found, sound, small }
     }
 }
 
