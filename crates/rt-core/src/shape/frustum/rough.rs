@@ -202,7 +202,7 @@ impl Numbers {
     /// B / A errs by the rounding of d', 3 u |d|, times `|w'| / |d'|^2`: in length along the ray by 3 u K^2 |w'|, which is 3 K
     /// times u S over the cosine, 1 / K, where the ray begins far from the axis: up to K = 8, 24 of the 64 that are promised. A step of Newton's method, whose slope is
     /// `-+2 sqrt(D)`, gives the digits of the place itself.
-    #[inline(never)]
+    #[inline(always)]
     fn along_cylinder(&self, w: DVec3, d: DVec3, chord: Chord, root: f64) -> Rough {
         let half = 0.5 / root;
         let rest = |t: f64| {
