@@ -174,6 +174,8 @@ struct First {
 /// The light of the surfaces that rays from the eye hit: their colours, but for what rays bring that go on.
 struct LightMany<'a, 's> {
     tracer: &'a mut Tracer<'s>,
+    /// What is added to the numbers of rays where shadow rays wait.
+    start: usize,
     rays: &'a [Ray],
     surfaces: &'a [Surface],
     hits: &'a [First],
@@ -196,7 +198,7 @@ impl LightMany<'_, '_> {
     /// Up to four hits.
     #[inline(always)]
     fn four<L: Lanes>(&mut self, lanes: L, hits: &[First]) {
-        let LightMany { tracer, rays, surfaces, colors, queues, .. } = self;
+        let LightMany { tracer, start: first, rays, surfaces, colors, queues, .. } = self;
         let scene = tracer.scene;
         let Some(last) = hits.last() else { return };
         // Places without a hit repeat the last.
@@ -259,7 +261,7 @@ impl LightMany<'_, '_> {
                 let mut color = light.color() * strength;
                 if let Some(queues) = queues {
                     let gift = tracer.gift(material, bodies[i], color, &arriving);
-                    queues[lamp].push(hit.number, &from(), light.position(), gift);
+                    queues[lamp].push(*first + hit.number, &from(), light.position(), gift);
                     continue;
                 }
                 if tracer.shadows {
@@ -392,21 +394,33 @@ impl<'s> Tracer<'s> {
     ) {
         let mut surfaces = core::mem::take(&mut self.surfaces);
         let nowhere = Surface::new(0.0, DVec3::ZERO, DVec3::ZERO, DVec3::Y, 0.0);
-        surfaces.resize(rays.len().max(surfaces.len()), nowhere);
-        self.scene.geometry.surface_many(rays, all_found, &mut surfaces);
-        let first = |(number, found): (usize, &Option<Found>)| Some(First { number, found: (*found)? });
-        let hits: Vec<First> = all_found.iter().enumerate().filter_map(first).collect();
-        self.stats.eye_rays += rays.len() as u64;
-        self.stats.eye_hits += hits.len() as u64;
+        surfaces.resize(NEAR, nowhere);
         let mut queues = core::mem::take(&mut self.queues);
-        vectorize(LightMany {
-            queues: cast_together.then_some(&mut queues[..]),
-            tracer: self,
-            rays,
-            surfaces: &surfaces,
-            hits: &hits,
-            colors,
-        });
+        let (mut hits, mut spawning) = (Vec::with_capacity(NEAR), Vec::new());
+        let parts = rays.chunks(NEAR).zip(all_found.chunks(NEAR)).zip(colors.chunks_mut(NEAR));
+        for (part, ((rays, all_found), colors)) in parts.enumerate() {
+            self.scene.geometry.surface_many(rays, all_found, &mut surfaces);
+            hits.clear();
+            let first = |(number, found): (usize, &Option<Found>)| Some(First { number, found: (*found)? });
+            hits.extend(all_found.iter().enumerate().filter_map(first));
+            self.stats.eye_rays += rays.len() as u64;
+            self.stats.eye_hits += hits.len() as u64;
+            vectorize(LightMany {
+                queues: cast_together.then_some(&mut queues[..]),
+                tracer: self,
+                start: part * NEAR,
+                rays,
+                surfaces: &surfaces,
+                hits: &hits,
+                colors,
+            });
+            for First { number, found } in &hits {
+                if self.spawns(self.material(found), 1) {
+                    let number = First { number: part * NEAR + number, found: *found };
+                    spawning.push((number, surfaces[number.number % NEAR]));
+                }
+            }
+        }
         for queue in queues.iter_mut().filter(|queue| !queue.rays.is_empty()) {
             self.stats.shadow_rays += queue.rays.len() as u64;
             queue.blocked.resize(queue.rays.len(), false);

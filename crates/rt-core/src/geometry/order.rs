@@ -48,3 +48,39 @@ pub(super) fn put_together(places: &mut [Place]) {
     put_together(low);
     put_together(high);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Random;
+    use alloc::vec::Vec;
+    use glam::DVec3;
+
+    /// Every ray stays, and the directions of a packet are as near as those of so many neighbours can be.
+    #[test]
+    fn packets_of_like_directions() {
+        let mut random = Random::new(1);
+        for count in [0, 1, 31, 32, 33, 100, 4096] {
+            let rays: Vec<Ray> = (0..count)
+                .map(|_| Ray::new(DVec3::ZERO, random.direction() * random.magnitude(-200.0, 200.0)))
+                .collect();
+            let mut places: Vec<Place> = rays.iter().enumerate().map(|(n, ray)| Place::new(ray, n)).collect();
+            put_together(&mut places);
+            let mut numbers: Vec<u32> = places.iter().map(|place| place.number).collect();
+            for packet in numbers.chunks(PACKET).filter(|_| count == 4096) {
+                // A fifth of the cube's edge is the square root of PACKET / 4096 of its six sides.
+                let of =
+                    |n: &u32| rays[*n as usize].direction / rays[*n as usize].direction.abs().max_element();
+                let all = packet.iter().map(of);
+                let (min, max) =
+                    all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), d| (a.min(d), b.max(d)));
+                assert!((max - min).max_element() < 4.0 * 0.2 * 2.0, "{min} {max}");
+            }
+            numbers.sort_unstable();
+            assert!(numbers.into_iter().eq(0..count));
+        }
+        // A ray without a direction has a place too.
+        Place::new(&Ray::new(DVec3::ZERO, DVec3::ZERO), 0);
+        Place::new(&Ray::new(DVec3::ZERO, DVec3::NAN), 0);
+    }
+}

@@ -30,6 +30,7 @@ impl Vectorized for RecordMany<'_> {
                 && a.object == b.object
                 && a.object == c.object
                 && a.object == d.object
+                && geometry.store.may_go_by_four(a.object)
                 && let Some(shape) = geometry.shapes.get(a.object as usize)
             {
                 let (rays, hits) = ([ra, rb, rc, rd], [a.hit, b.hit, c.hit, d.hit]);
@@ -47,7 +48,7 @@ impl Vectorized for RecordMany<'_> {
             }
             for ((found, ray), surface) in found.iter().zip(rays).zip(surfaces) {
                 if let Some(found) = *found {
-                    *surface = geometry.shapes[found.object as usize].surface(ray, found.hit);
+                    *surface = geometry.surface(ray, found);
                 }
             }
         }

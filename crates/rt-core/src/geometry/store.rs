@@ -136,6 +136,16 @@ macro_rules! store {
                 (place >> Self::INDEX_BITS, (place & ((1 << Self::INDEX_BITS) - 1)) as usize)
             }
 
+            /// Whether an object may be of a kind whose records are made four at a time, as far as is known without a look at
+            /// it: among many objects that look takes longer than a record.
+            #[inline(always)]
+            pub fn may_go_by_four(&self, object: u32) -> bool {
+                match self.place(object).0 {
+                    $(kind if kind == $index => matches!(stringify!($kind), "Plane" | "Cylinder" | "Cone"),)*
+                    _ => true,
+                }
+            }
+
             /// [`Primitive::surface`] of an object, which is one of `shapes`: the copy here was just seen by the search.
             #[inline]
             pub fn surface(&self, shapes: &[Shape], object: u32, ray: &Ray, hit: Hit) -> Surface {

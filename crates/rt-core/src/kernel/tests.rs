@@ -36,6 +36,8 @@ impl Vectorized for Everything {
                 exact.extend(lanes.store(x).map(|x| bits(x.into())));
             }
             exact.push(u64::from(lanes.le(a, b)));
+            let words = core::array::from_fn(|i| (numbers[i].to_bits() >> 32) as u32);
+            exact.push(u64::from(lanes.large(words)));
             nearly
                 .extend(lanes.store(lanes.mul_sub(a, b, c)).into_iter().chain(lanes.store(lanes.inverse(a))));
             let four = |first: usize| core::array::from_fn(|i| numbers[(first + i) % 12]);
