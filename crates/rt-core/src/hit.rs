@@ -68,6 +68,12 @@ impl Hit {
         Hit { t, place: NonZeroU64::MIN.saturating_add(u64::from(part) << 32 | u64::from(root)) }
     }
 
+    /// The only crossing with a shape of one part, if that is met: without a branch.
+    #[inline(always)]
+    pub(crate) fn only(t: f64, meets: bool) -> Option<Hit> {
+        NonZeroU64::new(u64::from(meets)).map(|place| Hit { t, place })
+    }
+
     /// The parameter along the ray, in lengths of its direction, within a few units in the last place.
     #[inline]
     pub fn t(&self) -> f64 {

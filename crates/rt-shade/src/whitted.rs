@@ -135,7 +135,7 @@ impl Gift {
 
 /// A point that a ray hit, with all that spawned rays need.
 struct Vertex<'s> {
-    found: Found,
+    found: &'s Found,
     surface: &'s Surface,
     /// The unit direction of the ray that arrived.
     direction: DVec3,
@@ -150,7 +150,7 @@ struct Vertex<'s> {
 struct Shade<'a, 's> {
     tracer: &'a mut Tracer<'s>,
     ray: &'a Ray,
-    found: Found,
+    found: &'a Found,
     depth: u32,
     weight: f64,
 }
@@ -224,11 +224,11 @@ impl LightMany<'_, '_> {
         // As `Departure::ray` begins.
         let error = Four::new(lanes, surface.map(|surface| surface.error));
         let start = at.point + geometric * Four::if_less(against, zero, error, -error);
-        let materials = four.map(|hit| tracer.material(hit.found));
+        let materials = four.map(|hit| tracer.material(&hit.found));
         let mut bodies = [Color::BLACK; 4];
         let mut shows = 0;
         for (i, hit) in hits.iter().enumerate() {
-            if let Some(body) = tracer.body(hit.found, surface[i]) {
+            if let Some(body) = tracer.body(&hit.found, surface[i]) {
                 bodies[i] = body;
                 shows |= 1 << i;
                 colors[hit.number] = scene.ambient * body;
@@ -288,7 +288,7 @@ struct Spawn<'a, 's> {
     tracer: &'a mut Tracer<'s>,
     local: Color,
     ray: &'a Ray,
-    found: Found,
+    found: &'a Found,
     surface: &'a Surface,
 }
 
@@ -351,19 +351,19 @@ impl<'s> Tracer<'s> {
             None => self.scene.background,
             Some(found) => {
                 self.stats.eye_hits += 1;
-                self.shade(ray, found, 1, 1.0)
+                self.shade(ray, &found, 1, 1.0)
             }
         }
     }
 
     /// The colour of a hit.
-    fn shade(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
+    fn shade(&mut self, ray: &Ray, found: &Found, depth: u32, weight: f64) -> Color {
         run(Shade { tracer: self, ray, found, depth, weight })
     }
 
     #[inline(always)]
-    fn shade_here(&mut self, ray: &Ray, found: Found, depth: u32, weight: f64) -> Color {
-        let surface = self.scene.geometry.surface(ray, found);
+    fn shade_here(&mut self, ray: &Ray, found: &Found, depth: u32, weight: f64) -> Color {
+        let surface = self.scene.geometry.surface(ray, *found);
         let vertex = self.vertex(ray, found, &surface);
         let local = self.local(&vertex);
         self.with_spawned(local, &vertex, depth, weight)
@@ -415,7 +415,7 @@ impl<'s> Tracer<'s> {
                 colors,
             });
             for hit in &hits {
-                if self.spawns(self.material(hit.found), 1) {
+                if self.spawns(self.material(&hit.found), 1) {
                     let first = First { number: part * NEAR + hit.number, found: hit.found };
                     spawning.push((first, surfaces[hit.number]));
                 }
@@ -437,7 +437,7 @@ impl<'s> Tracer<'s> {
         }
         self.queues = queues;
         for (First { number, found }, surface) in &spawning {
-            let (local, ray, found) = (colors[*number], &rays[*number], *found);
+            let (local, ray) = (colors[*number], &rays[*number]);
             colors[*number] = run(Spawn { tracer: self, local, ray, found, surface });
         }
         self.surfaces = surfaces;
@@ -445,13 +445,13 @@ impl<'s> Tracer<'s> {
 
     /// The material of what was hit.
     #[inline(always)]
-    fn material(&self, found: Found) -> &'s Material {
+    fn material(&self, found: &Found) -> &'s Material {
         &self.scene.materials[self.scene.material_of[found.object as usize] as usize]
     }
 
     /// A hit and all that spawned rays need.
     #[inline(always)]
-    fn vertex<'a>(&self, ray: &Ray, found: Found, surface: &'a Surface) -> Vertex<'a>
+    fn vertex<'a>(&self, ray: &Ray, found: &'a Found, surface: &'a Surface) -> Vertex<'a>
     where
         's: 'a,
     {
@@ -485,7 +485,7 @@ impl<'s> Tracer<'s> {
 
     /// The colour of the surface itself, before it is lit; `None` where it shows none.
     #[inline(always)]
-    fn body(&self, found: Found, surface: &Surface) -> Option<Color> {
+    fn body(&self, found: &Found, surface: &Surface) -> Option<Color> {
         let scene = self.scene;
         let material = self.material(found);
         if material.diffuse == 0.0 && material.specular == 0.0 {
@@ -653,7 +653,7 @@ impl<'s> Tracer<'s> {
             None => self.scene.background,
             Some(found) => {
                 self.stats.secondary_hits += 1;
-                self.shade(ray, found, depth, weight)
+                self.shade(ray, &found, depth, weight)
             }
         }
     }

@@ -72,7 +72,7 @@ mod tests {
     use crate::Interval;
     use crate::kernel::PortableLanes;
     use crate::math::exp2i;
-    use crate::shape::{Cylinder, Plane, Sphere};
+    use crate::shape::{Cone, Cylinder, Plane, Sphere};
     use crate::testing::Random;
     use alloc::vec::Vec;
     use glam::DVec3;
@@ -87,18 +87,20 @@ mod tests {
             .add(floor)
             .add(slope)
             .add(Sphere::new([0.0, 0.0, 1.0], 0.5).unwrap())
-            .add(Cylinder::new([1.0, -1.0, 0.0], [1.5, 1.0, 1.0], 0.4).unwrap())
+            .add(Cylinder::new([1.0, -0.9, 0.0], [1.5, 1.0, 1.0], 0.4).unwrap())
+            .add(Cone::new([-1.0, -0.9, 0.3], 0.8, [-1.0, 1.0, 0.0], 0.1).unwrap())
             .build();
-        let (mut fours, mut in_doubt) = (0, 0);
+        let targets = [floor.point(), slope.point(), DVec3::new(1.25, 0.0, 0.5), DVec3::new(-1.0, 0.0, 0.2)];
+        let (mut fours, mut in_doubt) = ([0; 5], 0);
         for case in 0..2000 {
             let size = if case % 8 == 0 { random.magnitude(-140.0, 140.0) } else { 1.0 };
             let origin = random.in_cube() * 4.0 * size;
-            let mut target = [floor.point(), slope.point()][case % 2];
-            if case % 16 == 2 {
+            let mut target = targets[case % 4];
+            if case % 16 == 1 || case % 16 == 4 {
                 // At the anchor to within this, where a place may have too few digits.
                 target += random.in_cube() * random.magnitude(-40.0, -5.0);
             } else {
-                target += random.in_cube() * 9.0;
+                target += random.in_cube() * if case % 4 < 2 { 9.0 } else { 0.9 };
             }
             let rays: Vec<Ray> = (0..9)
                 .map(|i| {
@@ -123,10 +125,13 @@ mod tests {
                 assert_eq!(bits(&portable[i]), bits(&expected), "{ray:?}");
             }
             let objects: Vec<_> = found[..4].iter().map(|found| found.map(|found| found.object)).collect();
-            fours +=
-                u32::from(objects.iter().all(|&o| o == Some(0)) || objects.iter().all(|&o| o == Some(1)));
-            in_doubt += u32::from(case % 8 == 0 || case % 16 == 2);
+            if let Some(object) = objects[0]
+                && objects.iter().all(|&o| o == objects[0])
+            {
+                fours[object as usize] += 1;
+            }
+            in_doubt += u32::from(case % 8 == 0 || case % 16 == 1 || case % 16 == 4);
         }
-        assert!(fours > 500 && in_doubt > 100, "{fours} {in_doubt}");
+        assert!([0, 1, 3, 4].iter().all(|&o| fours[o] > 100) && in_doubt > 100, "{fours:?} {in_doubt}");
     }
 }

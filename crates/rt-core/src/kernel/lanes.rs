@@ -1,9 +1,9 @@
-//! Eight `f32` lanes: the arithmetic of box tests, once portable and once for AVX2.
+//! Lanes: eight `f32` for box tests, four `f64` for shading; once portable and once for AVX2.
 
 use super::{Dekker, Product};
 use crate::math::sqrt;
 
-/// The operations of a box test on eight `f32` at once.
+/// The operations of a box test on eight `f32` at once, and arithmetic on four `f64`.
 ///
 /// A value of an implementing type is the proof that the machine has the instructions: it can only be had inside
 /// [`vectorize`](super::vectorize). Box tests only cull, so two implementations need not agree in the last bit; each

@@ -1,8 +1,8 @@
 //! Instruction sets, picked at run time: the only module with `unsafe` code.
 //!
 //! Whatever is detected, the results are the same bits: fused multiply-add is used for error-free products only
-//! (where it computes exactly what Dekker's splitting computes), and vector code only culls, but for [`Pair`], whose lanes round
-//! as numbers by themselves do on every machine.
+//! (where it computes exactly what Dekker's splitting computes), and `f32` lanes only cull. The `f64` lanes of [`Pair`] and
+//! [`Four`] round as numbers by themselves do on every machine.
 #![allow(unsafe_code)]
 
 mod avx2;

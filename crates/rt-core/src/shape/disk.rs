@@ -141,7 +141,7 @@ impl Disk {
 struct Rim {
     /// The square of the radius, or NaN where that would leave the range of the exponents.
     square: f64,
-    /// 2^-36 and 8 u of the radius.
+    /// 2^-36 and 8 u of it, three times.
     least: f64,
     /// Three radii.
     reach: f64,
@@ -149,8 +149,8 @@ struct Rim {
 
 impl Rim {
     fn new(radius: f64) -> Rim {
-        let least = (exp2i(-36) + 8.0 * U) * radius;
-        Rim { square: radius * radius + range_guard(radius), least, reach: 3.0 * radius }
+        let square = radius * radius + range_guard(radius);
+        Rim { square, least: 3.0 * (exp2i(-36) + 8.0 * U) * square, reach: 3.0 * radius }
     }
 
     /// How much more the square of the radius is than that of the distance of the place.
@@ -163,11 +163,12 @@ impl Rim {
     ///
     /// A place nearer than 2 r errs by 2^-39 of `|t d| <= |v| + 2 r` along the ray, v the origin seen from the centre; one
     /// beyond, by that of `|v| + rho`. Either is below e if |rho - r| is, for e = 2^-37 |v| + 2^-36 r + 8 u r. For a hit
-    /// that is more than what [`Disk::plainly`] allows for: it does not doubt what this does not.
+    /// that is more than what [`Disk::plainly`] allows for: it does not doubt what this does not. With a the first part of
+    /// it and l the others, `e (e + 2 r)` is less than `a (a + 3 r) + 3 l r`.
     #[inline(always)]
     fn doubt(&self, rough: &Rough) -> f64 {
         let along = exp2i(-37) * rough.reach();
-        (along + self.least) * (along + self.reach)
+        along * (along + self.reach) + self.least
     }
 }
 
@@ -228,15 +229,18 @@ impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
         let rough = Rough::new(&self.facing, ray);
-        if rough.is_close() & rough.is_clear(within) {
-            if !within.contains(rough.t) {
-                return None;
+        if rough.is_close()
+            && let Some(mut meets) = rough.is_within(within)
+        {
+            if meets {
+                let depth = self.rim.depth(&rough);
+                if !(depth.abs() > self.rim.doubt(&rough)) {
+                    return self.hit_closely(ray, within);
+                }
+                meets = depth > 0.0;
             }
-            let depth = self.rim.depth(&rough);
-            if depth.abs() > self.rim.doubt(&rough) {
-                // No branch between hit and miss, since neighbouring rays may differ.
-                return if depth > 0.0 { Some(Hit::inside(rough.t, 0, 0)) } else { None };
-            }
+            // No branch between hit and miss, since neighbouring rays may differ.
+            return Hit::only(rough.t, meets);
         }
         self.hit_closely(ray, within)
     }

@@ -165,6 +165,19 @@ impl Rough {
         is_apart(self.t, within.min) & is_apart(self.t, within.max)
     }
 
+    /// Whether the interval contains a close parameter, where that is certain at a glance: in front of the origin, or behind,
+    /// by the signs, while the interval is not. Positive numbers are ordered like their bits, with negative ones below all.
+    #[inline(always)]
+    pub(super) fn is_within(&self, within: Interval) -> Option<bool> {
+        let [t, min, max] = [self.t, within.min, within.max].map(|x| x.to_bits() as i64);
+        let signs = self.products.signs();
+        if signs == 1 || signs == 2 {
+            return if min >= 0 { Some(false) } else { None };
+        }
+        let numbers = !(within.min.is_nan() | within.max.is_nan());
+        if numbers & (t - APART > min) & (t + APART < max) { Some(true) } else { None }
+    }
+
     /// The hit of a ray that certainly meets the shape.
     #[inline(always)]
     pub(super) fn hit(self, within: Interval) -> Verdict {
@@ -188,9 +201,12 @@ impl Rough {
 /// normal number, and 2^-1034 among subnormal ones.
 #[inline(always)]
 fn is_apart(a: f64, b: f64) -> bool {
-    const LEAST: u64 = 1 << 40;
+    const LEAST: u64 = APART as u64;
     a.to_bits().wrapping_sub(b.to_bits()).wrapping_add(LEAST) > 2 * LEAST
 }
+
+/// See [`is_apart`].
+const APART: i64 = 1 << 40;
 
 /// The hit or none, where plain `f64` can tell.
 pub(super) type Verdict = Result<Option<Hit>, Doubt>;

@@ -223,7 +223,7 @@ impl Numbers {
     ///
     /// A step of Newton's method, whose slope is `-+2 sqrt(D)`, gives them the digits of the quadratic at the place itself.
     /// Measured: 6 u S over the cosine between ray and normal.
-    #[inline(never)]
+    #[inline(always)]
     fn along_side(&self, w: DVec3, d: DVec3, [a, b, root, margin]: [f64; 4]) -> Rough {
         let Numbers { axis, height, base_radius, slope, size, .. } = *self;
         let (z, z_growth) = (axis.dot(w), axis.dot(d));
@@ -265,7 +265,7 @@ impl Numbers {
     ///
     /// Where D is more than 2^14 times that, `F < q / 2^16`, and the parameters err by less than 2^-15 from the root and
     /// twice 2^-16 from the rest, of half the chord: its 2^-13 is a margin. Where D is 2^20 times that, so is 2^-19.
-    #[inline(never)]
+    #[inline(always)]
     fn along_axis(&self, w: DVec3, d: DVec3) -> Rough {
         let Numbers { axis, height, base_radius, slope, reach, size } = *self;
         let (z, z_growth) = (axis.dot(w), axis.dot(d));
