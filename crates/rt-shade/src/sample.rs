@@ -134,7 +134,7 @@ mod tests {
                 let (x, y) = ((i % 41) as f64 + dx, (i / 41) as f64 + dy);
                 sum += single.eye(&scene.camera().ray(x, y, 41, 33));
             }
-            assert_eq!((sum * 0.25).to_f32(), *pixel, "pixel {i}");
+            assert_eq!((sum * 0.25).to_f32(), *pixel, "pixel {i} of {count} {transmit}");
         }
         assert_eq!(together.stats, single.stats);
         assert!(single.stats.shadow_hits > 30 && single.stats.reflected_rays > 30, "{:?}", single.stats);

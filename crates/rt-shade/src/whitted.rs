@@ -414,10 +414,10 @@ impl<'s> Tracer<'s> {
                 hits: &hits,
                 colors,
             });
-            for First { number, found } in &hits {
-                if self.spawns(self.material(found), 1) {
-                    let number = First { number: part * NEAR + number, found: *found };
-                    spawning.push((number, surfaces[number.number % NEAR]));
+            for hit in &hits {
+                if self.spawns(self.material(&hit.found), 1) {
+                    let first = First { number: part * NEAR + hit.number, found: hit.found };
+                    spawning.push((first, surfaces[hit.number]));
                 }
             }
         }
@@ -436,11 +436,9 @@ impl<'s> Tracer<'s> {
             queue.clear();
         }
         self.queues = queues;
-        for &First { number, ref found } in &hits {
-            if self.spawns(self.material(found), 1) {
-                let (local, ray, surface) = (colors[number], &rays[number], &surfaces[number]);
-                colors[number] = run(Spawn { tracer: self, local, ray, found, surface });
-            }
+        for (First { number, found }, surface) in &spawning {
+            let (local, ray) = (colors[*number], &rays[*number]);
+            colors[*number] = run(Spawn { tracer: self, local, ray, found, surface });
         }
         self.surfaces = surfaces;
     }
