@@ -415,4 +415,23 @@ mod tests {
         }
         assert!(count.iter().all(|&count| count > 500), "{count:?}");
     }
+
+    /// A parameter that underflows to zero is not inside an interval that begins at minus zero.
+    #[test]
+    fn parameters_that_underflow() {
+        let disk = Disk::new(
+            [-8.307674969787162e34, 0.0, 0.0],
+            [0.0, 1.907348634588857e-6, 1.5576911988681483],
+            7.339311609538979e36,
+        );
+        let disk = disk.unwrap();
+        let ray = Ray::new(
+            [-6.951677008358049e-209, -4.260078838878369e-119, -1.4678102010332136e-186],
+            [-f64::MAX, f64::MAX, 1.1527554512648458e51],
+        );
+        for min in [-0.0, 0.0] {
+            let within = Interval::new(min, f64::INFINITY);
+            assert!(disk.hit(&ray, within).is_none_or(|hit| within.contains(hit.t())), "{min}");
+        }
+    }
 }

@@ -166,7 +166,8 @@ impl Rough {
     }
 
     /// Whether the interval contains a close parameter, where that is certain at a glance: in front of the origin, or behind,
-    /// by the signs, while the interval is not. Positive numbers are ordered like their bits, with negative ones below all.
+    /// by the signs, while the interval is not. Positive numbers are ordered like their bits, with negative ones below all; one
+    /// that may have underflown is not certain to be beyond those.
     #[inline(always)]
     pub(super) fn is_within(&self, within: Interval) -> Option<bool> {
         let [t, min, max] = [self.t, within.min, within.max].map(|x| x.to_bits() as i64);
@@ -175,7 +176,7 @@ impl Rough {
             return if min >= 0 { Some(false) } else { None };
         }
         let numbers = !(within.min.is_nan() | within.max.is_nan());
-        if numbers & (t - APART > min) & (t + APART < max) { Some(true) } else { None }
+        if numbers & (t - APART > min.max(0)) & (t + APART < max) { Some(true) } else { None }
     }
 
     /// The hit of a ray that certainly meets the shape.
