@@ -1,6 +1,7 @@
 //! Three `f64`, the coordinates of a vector: one by itself and two in lanes.
 
 use super::pair::Pair;
+use crate::math::{greater, lesser};
 use core::ops::{Mul, Sub};
 
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
@@ -160,14 +161,4 @@ impl Mul for Triple {
     fn mul(self, other: Triple) -> Triple {
         Triple { x: self.x * other.x, y_z: self.y_z * other.y_z }
     }
-}
-
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }

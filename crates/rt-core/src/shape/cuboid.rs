@@ -10,7 +10,7 @@ use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Pair, Pairs, Product, Task, Triple, Which, run};
-use crate::math::{exp2i, exponent};
+use crate::math::{exp2i, exponent, greater, lesser};
 use crate::scaled::{checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use core::cmp::Ordering;
@@ -709,17 +709,6 @@ fn coordinate(v: DVec3, k: usize) -> f64 {
         _ => v.z,
     }
 }
-
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,7 +11,7 @@ use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::{Double, fast_two_sum, two_difference};
 use crate::expansion::Expansion;
 use crate::kernel::{Pair, Pairs, Product, Task, run};
-use crate::math::exp2i;
+use crate::math::{exp2i, greater, lesser};
 use crate::scaled::{checked_point, range_guard, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
@@ -363,17 +363,6 @@ impl Primitive for Triangle {
 
     fn crossings_leaving(&self, _: &Ray, _: Interval, _: &Departure, _: &mut dyn FnMut(Hit)) {}
 }
-
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
