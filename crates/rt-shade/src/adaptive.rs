@@ -16,8 +16,10 @@
 //! drawn. A tile looks at most two pixels beyond its border, and only where a cell there decides one inside: a cell of level
 //! `l` asks its neighbours, whose existence is asked of their parents' neighbours, and `1 + 1/2 + 1/4 + .. < 2`.
 
+use crate::sample::in_squares;
 use crate::whitted::Tracer;
 use crate::{Camera, Color, Region, Settings};
+use rt_core::{Found, Interval, Ray};
 
 /// How far a tile looks beyond its border, in pixels.
 const HALO: u32 = 2;
@@ -29,6 +31,9 @@ const COARSE: u32 = 2;
 ///
 /// A straight line crosses 7 of them at most; 6 leaves out the fewest of the edges and most of the patterns.
 const EDGE_CELLS: u32 = 6;
+
+/// Rays that are cast in one piece.
+const BATCH: usize = 1024;
 
 /// The tile's edge: a large one shares more corners, but the finest raster must stay small (a few MB).
 pub(crate) fn tile_edge(depth: u32) -> u32 {
@@ -44,6 +49,12 @@ pub(crate) struct Buffers {
     cells: Vec<Vec<Known>>,
     /// By pixel: whether it has an edge.
     edges: Vec<Known>,
+    /// Rays to be traced together, the indices of their samples, and what is known of them.
+    waiting: Vec<usize>,
+    rays: Vec<Ray>,
+    within: Vec<Interval>,
+    found: Vec<Option<Found>>,
+    colors: Vec<Color>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +106,7 @@ pub(crate) fn tile(
     let threshold = threshold as f32;
     let stride = columns + 1;
     let mut pixels = Pixels { tracer, buffers, camera, width, height, threshold, depth, view, stride };
+    pixels.prepare(tile);
     out.clear();
     for y in tile.y - view.y..tile.y - view.y + tile.height {
         for x in tile.x - view.x..tile.x - view.x + tile.width {
@@ -111,13 +123,53 @@ struct Cell {
     y: u32,
 }
 
+impl Cell {
+    fn quadrants(self) -> [Cell; 4] {
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| Cell {
+            level: self.level + 1,
+            x: 2 * self.x + i,
+            y: 2 * self.y + j,
+        })
+    }
+}
+
 impl Pixels<'_, '_> {
+    /// Traces what the pixels of the tile need, level by level: many rays together, neighbours side by side.
+    fn prepare(&mut self, tile: Region) {
+        let (left, top) = (tile.x - self.view.x, tile.y - self.view.y);
+        let mut cells = Vec::with_capacity(tile.width as usize * tile.height as usize);
+        in_squares(tile.width, 0..tile.height, |x, y| {
+            cells.push(Cell { level: 0, x: left + x, y: top + y });
+        });
+        self.trace(cells.iter().flat_map(|cell| self.points(*cell, 1)).collect::<Vec<_>>());
+        let mut parts = Vec::new();
+        for _ in 0..self.depth {
+            parts.clear();
+            let mut points = Vec::new();
+            for &cell in &cells {
+                if self.splits(cell) {
+                    points.extend(self.points(cell, 2));
+                    parts.extend(cell.quadrants());
+                }
+            }
+            self.trace(points);
+            core::mem::swap(&mut cells, &mut parts);
+        }
+    }
+
+    /// The corners of the `n` x `n` parts of a cell.
+    fn points(&self, cell: Cell, n: u32) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let shift = self.depth - cell.level - (n - 1);
+        (0..(n + 1) * (n + 1))
+            .map(move |i| ((n * cell.x + i % (n + 1)) << shift, (n * cell.y + i / (n + 1)) << shift))
+    }
+
     /// The mean colour of a cell.
     fn value(&mut self, cell: Cell) -> Color {
         let mut sum = Color::BLACK;
         if self.splits(cell) {
-            for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                sum += self.value(Cell { level: cell.level + 1, x: 2 * cell.x + i, y: 2 * cell.y + j });
+            for part in cell.quadrants() {
+                sum += self.value(part);
             }
         } else {
             for corner in self.corners(cell) {
@@ -201,24 +253,49 @@ impl Pixels<'_, '_> {
 
     fn corners(&mut self, cell: Cell) -> [[f32; 3]; 4] {
         let shift = self.depth - cell.level;
-        let mut at = |i, j| self.sample((cell.x + i) << shift, (cell.y + j) << shift);
-        [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
+        let places = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        let places = places.map(|(i, j)| ((cell.x + i) << shift, (cell.y + j) << shift));
+        let corners = places.map(|place| self.buffers.samples[self.sample(place)]);
+        if corners.iter().any(|corner| corner[0].is_nan()) {
+            self.trace(places);
+            return places.map(|place| self.buffers.samples[self.sample(place)]);
+        }
+        corners
     }
 
-    /// The colour at a point of the finest raster, traced when it is asked for first.
-    fn sample(&mut self, x: u32, y: u32) -> [f32; 3] {
-        let index = y as usize * self.stride + x as usize;
-        let known = self.buffers.samples[index];
-        if !known[0].is_nan() {
-            return known;
-        }
+    /// Traces those of these points of the finest raster that were not asked for before.
+    fn trace(&mut self, places: impl IntoIterator<Item = (u32, u32)>) {
         // Exact: a power of two.
         let step = 1.0 / f64::from(1u32 << self.depth);
-        let u = f64::from(self.view.x) + f64::from(x) * step;
-        let v = f64::from(self.view.y) + f64::from(y) * step;
-        let color = self.tracer.eye(&self.camera.ray(u, v, self.width, self.height)).to_f32();
-        self.buffers.samples[index] = color;
-        color
+        self.buffers.waiting.clear();
+        self.buffers.rays.clear();
+        for (x, y) in places {
+            let index = self.sample((x, y));
+            if self.buffers.samples[index][0].is_nan() {
+                // Not to be asked for twice.
+                self.buffers.samples[index] = [f32::INFINITY; 3];
+                let u = f64::from(self.view.x) + f64::from(x) * step;
+                let v = f64::from(self.view.y) + f64::from(y) * step;
+                self.buffers.rays.push(self.camera.ray(u, v, self.width, self.height));
+                self.buffers.waiting.push(index);
+            }
+        }
+        let Buffers { samples, waiting, rays, within, found, colors, .. } = &mut *self.buffers;
+        for (waiting, rays) in waiting.chunks(BATCH).zip(rays.chunks(BATCH)) {
+            within.resize(rays.len(), Interval::FORWARD);
+            found.clear();
+            found.resize(rays.len(), None);
+            self.tracer.nearest_many(rays, within, found);
+            self.tracer.seen_by_eye(rays, found, colors);
+            for (&index, color) in waiting.iter().zip(colors.iter()) {
+                samples[index] = color.to_f32();
+            }
+        }
+    }
+
+    /// The index of a point of the finest raster.
+    fn sample(&self, (x, y): (u32, u32)) -> usize {
+        y as usize * self.stride + x as usize
     }
 
     fn index(&self, cell: Cell) -> usize {

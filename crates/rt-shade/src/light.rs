@@ -76,6 +76,8 @@ struct Cone {
     axis: DVec3,
     cos_inner: f64,
     cos_outer: f64,
+    /// `1 / (cos_inner - cos_outer)`: infinite for a sharp edge, where no cosine lies between.
+    scale: f64,
 }
 
 impl Light {
@@ -134,7 +136,9 @@ impl Light {
             .or_else(|| crate::camera::unit(target - light.position))
             .ok_or(Error::Coincident { what: "light position and target", value: target })?;
         let cosine = |degrees: f64| libm::cos(degrees.to_radians());
-        light.cone = Some(Cone { axis, cos_inner: cosine(inner), cos_outer: cosine(outer) });
+        let (cos_inner, cos_outer) = (cosine(inner), cosine(outer));
+        let scale = 1.0 / (cos_inner - cos_outer);
+        light.cone = Some(Cone { axis, cos_inner, cos_outer, scale });
         Ok(light)
     }
 
@@ -168,7 +172,7 @@ impl Light {
         let of = |x| direction.x.all(x);
         let Some(cone) = &self.cone else { return of(1.0) };
         let cosine = Vector::all(direction.x, cone.axis).dot(direction);
-        let s = (cosine - of(cone.cos_outer)) / of(cone.cos_inner - cone.cos_outer);
+        let s = (cosine - of(cone.cos_outer)) * of(cone.scale);
         let between = s * s * (of(3.0) - of(2.0) * s);
         let outer = R::if_less(of(cone.cos_outer), cosine, between, of(0.0));
         R::if_at_most(of(cone.cos_inner), cosine, of(1.0), outer)

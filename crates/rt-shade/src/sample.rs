@@ -25,7 +25,7 @@ pub(crate) struct Buffers {
 
 /// Calls `each` with the places of some rows of pixels, in squares of [`BLOCK`]: neighbours in that order go side by side.
 #[inline(always)]
-fn in_squares(width: u32, rows: Range<u32>, mut each: impl FnMut(u32, u32)) {
+pub(crate) fn in_squares(width: u32, rows: Range<u32>, mut each: impl FnMut(u32, u32)) {
     for top in rows.clone().step_by(BLOCK) {
         let bottom = (top + BLOCK as u32).min(rows.end);
         for left in (0..width).step_by(BLOCK) {
@@ -78,7 +78,7 @@ pub(crate) fn tile(
         found.clear();
         found.resize(rays.len(), None);
         tracer.nearest_many(rays, within, found);
-        tracer.all_seen_by_eye(rays, found, colors);
+        tracer.seen_by_eye(rays, found, colors);
         let mut colors = colors.chunks_exact(samples);
         in_squares(tile.width, rows, |x, y| {
             let Some(colors) = colors.next() else { return };
@@ -126,13 +126,16 @@ mod tests {
             Settings { width: 41, height: 33, antialias: Antialias::Grid(2), ..Settings::default() };
         let all = Region { x: 0, y: 0, width: 41, height: 33 };
         let (mut together, mut single) = (Tracer::new(&scene, &settings), Tracer::new(&scene, &settings));
-        let mut pixels = Vec::new();
+        let (mut pixels, mut colors) = (Vec::new(), Vec::new());
         tile(&mut together, &mut Buffers::default(), scene.camera(), &settings, all, &mut pixels);
         for (i, pixel) in pixels.iter().enumerate() {
             let mut sum = Color::BLACK;
             for (dx, dy) in [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)] {
                 let (x, y) = ((i % 41) as f64 + dx, (i / 41) as f64 + dy);
-                sum += single.eye(&scene.camera().ray(x, y, 41, 33));
+                let (rays, mut found) = ([scene.camera().ray(x, y, 41, 33)], [None]);
+                single.nearest_many(&rays, &[Interval::FORWARD], &mut found);
+                single.seen_by_eye(&rays, &found, &mut colors);
+                sum += colors[0];
             }
             assert_eq!((sum * 0.25).to_f32(), *pixel, "pixel {i} of {count} {transmit}");
         }

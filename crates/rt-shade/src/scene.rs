@@ -6,7 +6,7 @@ use crate::medium::Medium;
 use crate::texture::Mapping;
 use crate::{Camera, Color, Error, Light, Material, Paint, Texture};
 use rt_core::glam::DVec3;
-use rt_core::{DirectionCube, Geometry, GeometryBuilder, Interval, Ray, Screen, Shape};
+use rt_core::{DirectionCube, Found, Geometry, GeometryBuilder, Interval, Ray, Screen, Shape};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -99,6 +99,12 @@ impl Scene {
     /// The light that comes from everywhere.
     pub fn ambient(&self) -> Color {
         self.ambient
+    }
+
+    /// The material of what was hit.
+    #[inline(always)]
+    pub(crate) fn material_hit(&self, found: &Found) -> &Material {
+        &self.materials[self.material_of[found.object as usize] as usize]
     }
 }
 

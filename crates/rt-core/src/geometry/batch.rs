@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 const BLOCK: usize = 1024;
 
 /// The rays in flight when interleaved.
-const IN_FLIGHT: usize = 12;
+pub(super) const IN_FLIGHT: usize = 12;
 
 /// What is asked about each ray of a batch.
 trait Request {

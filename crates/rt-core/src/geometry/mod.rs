@@ -16,6 +16,7 @@ mod batch;
 mod builder;
 mod cube;
 mod frame;
+mod leaving;
 mod order;
 mod outline;
 mod packet;
