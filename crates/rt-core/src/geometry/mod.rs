@@ -21,6 +21,7 @@ mod outline;
 mod packet;
 mod query;
 mod record;
+mod rings;
 mod store;
 mod stream;
 mod traverse;
