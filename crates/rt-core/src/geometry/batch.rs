@@ -5,6 +5,7 @@ use super::frame::{PACKET, Side, Window};
 use super::order::{Place, put_together};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
+use super::rings::{Rings, Together};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
@@ -19,7 +20,7 @@ pub(super) const IN_FLIGHT: usize = 12;
 
 /// What is asked about each ray of a batch.
 trait Request {
-    type Query: Query;
+    type Query: Query + Together;
     type Answer;
     fn query(within: Interval, window: Window, skip: Option<u32>) -> Self::Query;
     /// The answer when the ray cannot hit anything.
@@ -132,6 +133,7 @@ fn block<R: Request, L: Lanes>(
         side: Side::EMPTY,
         queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
         active: 0,
+        rings: Rings::NONE,
     };
     for first in (0..count).step_by(PACKET) {
         let members = first..(first + PACKET).min(count);

@@ -78,6 +78,9 @@ macro_rules! store {
             /// The kind of spheres.
             pub const BALL: u32 = 0;
 
+            /// The kind of tori.
+            pub const RING: u32 = 5;
+
             /// The bits of an index within a kind.
             const INDEX_BITS: u32 = 28;
 
@@ -220,6 +223,27 @@ store! {
     6 disks Disk Disk;
     7 triangles Triangle Triangle;
     8 customs Custom Arc<dyn Primitive>;
+}
+
+impl Store {
+    /// The torus of this index, and its object.
+    #[inline(always)]
+    pub fn torus(&self, index: usize) -> Option<(&Torus, u32)> {
+        Some((self.tori.shapes.get(index)?, *self.tori.objects.get(index)?))
+    }
+
+    /// The torus that an object is, which is one of `shapes`; none where it is something else.
+    #[inline(always)]
+    pub fn ring<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<&'a Torus> {
+        match self.place(object) {
+            (Self::RING, index) => self.tori.shapes.get(index),
+            (kind, _) if (kind as usize) < Self::KINDS => None,
+            _ => match shapes.get(object as usize) {
+                Some(Shape::Torus(torus)) => Some(torus),
+                _ => None,
+            },
+        }
+    }
 }
 
 #[cfg(test)]
