@@ -189,10 +189,20 @@ impl LightMany<'_, '_> {
             let along = mirrored.dot(-direction).to_array();
             let strength = (share * light.attenuation().factor(distance)).to_array();
             let cosine = cosine.to_array();
+            let (mut blocked, mut free) = (0, 0);
             let ways = match cube {
-                Some(cube) if tracer.shadows => Some((cube, Geometry::four_towards(cube, start))),
+                Some(cube) if tracer.shadows => {
+                    let mut ways = Geometry::four_towards(cube, start);
+                    let left = [0, 1, 2, 3].map(|i| four[i].found.object);
+                    blocked = scene.geometry.blocked_by_tori(cube, &mut ways, lit, left, &scene.screens);
+                    free = lit & !blocked & Geometry::are_free(cube, &ways, left, outside);
+                    Some((cube, ways))
+                }
                 _ => None,
             };
+            tracer.stats.shadow_rays += u64::from((blocked | free).count_ones());
+            tracer.stats.shadow_hits += u64::from(blocked.count_ones());
+            lit &= !blocked;
             while lit != 0 {
                 let i = lit.trailing_zeros() as usize & 3;
                 lit &= lit - 1;
@@ -207,7 +217,7 @@ impl LightMany<'_, '_> {
                     queues[lamp].push(*first + hit.number, &from(), light.position(), gift);
                     continue;
                 }
-                if tracer.shadows {
+                if tracer.shadows && free >> i & 1 == 0 {
                     let visible = match &ways {
                         Some((cube, ways)) => tracer.visible(|each| {
                             let object = hit.found.object;

@@ -16,14 +16,16 @@
 //! `2^-10 S` and of the object's size; with a depth of at least 2^-20 S on the face that is far less than the margin, and
 //! where a corner is less deep, the box alone counts.
 
-use super::frame::{Window, Windows};
+use super::frame::Windows;
 use super::outline::{Face, Outline};
 use super::query::{Nearest, Path, Query, Screen};
+use super::rings::AskFour;
 use super::{Found, Geometry, frame, is_legal};
 use crate::kernel::{Four, Lanes, Real, Vector, Vectorized, vectorize};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{largest, moderate};
-use crate::{Departure, Interval, Primitive, Ray, Shape};
+use crate::shape::Torus;
+use crate::{Departure, Hit, Interval, Primitive, Ray, Shape};
 use alloc::vec::Vec;
 use glam::DVec3;
 
@@ -48,6 +50,11 @@ pub struct DirectionCube {
     distances: Vec<f64>,
     /// By object: its bit.
     bits: Vec<u64>,
+    /// The objects that are tori.
+    rings: u64,
+    /// Those that no ray meets that leaves them on the outside, and those that no ray meets that leaves them.
+    convex: u64,
+    flat: u64,
     /// The ties of rays that begin at the point.
     windows: Windows,
     /// Face after face, row after row.
@@ -218,6 +225,9 @@ impl Geometry {
             objects: order.iter().map(|&(_, object)| object).collect(),
             distances: order.iter().map(|&(distance, _)| distance).collect(),
             bits: alloc::vec![0; order.len()],
+            rings: 0,
+            convex: 0,
+            flat: 0,
             windows: self.frame.windows(point),
             squares: alloc::vec![0; 6 * EDGE * EDGE],
         };
@@ -225,6 +235,14 @@ impl Geometry {
         for (place, (distance, object)) in order.into_iter().enumerate() {
             let bit = 1_u64 << place;
             cube.bits[object as usize] = bit;
+            match self.shapes[object as usize] {
+                Shape::Torus(_) => cube.rings |= bit,
+                Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Cylinder(_) | Shape::Cone(_) => {
+                    cube.convex |= bit;
+                }
+                Shape::Plane(_) | Shape::Disk(_) | Shape::Triangle(_) => cube.flat |= bit,
+                _ => {}
+            }
             if !(distance > 0.0) {
                 cube.squares.iter_mut().for_each(|square| *square |= bit);
                 continue;
@@ -268,8 +286,8 @@ impl Geometry {
         let square = ray.direction.dot(ray.direction);
         let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
         let mut found = None;
-        let window = cube.windows.of(ray.direction);
-        self.nearest_seen(cube, ray, within, window, length, cube.seen(ray.direction), &mut found);
+        let nearest = Nearest::new(within, cube.windows.of(ray.direction), None);
+        self.nearest_seen(cube, ray, nearest, length, cube.seen(ray.direction), &mut found);
         found
     }
 
@@ -279,18 +297,15 @@ impl Geometry {
     /// An answer goes from registers to its place. Returned or chosen first, it would be written in three parts and read back
     /// as two, which waits for all three.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     fn nearest_seen(
         &self,
         cube: &DirectionCube,
         ray: &Ray,
-        within: Interval,
-        window: Window,
+        mut nearest: Nearest,
         length: f64,
         mut rest: u64,
         found: &mut Option<Found>,
     ) {
-        let mut nearest = Nearest::new(within, window, None);
         while rest != 0 {
             let place = rest.trailing_zeros() as usize;
             rest &= rest - 1;
@@ -308,7 +323,48 @@ impl Geometry {
         }
         *found = nearest.best();
         if let Some(limit) = nearest.contested() {
-            *found = self.decide(ray, within, limit, None);
+            *found = self.decide(ray, nearest.within(), limit, None);
+        }
+    }
+
+    /// The torus of a bit, and its object.
+    #[inline(always)]
+    fn ring(&self, cube: &DirectionCube, place: usize) -> Option<(&Torus, u32)> {
+        let &object = cube.objects.get(place)?;
+        match self.shapes.get(object as usize) {
+            Some(Shape::Torus(torus)) => Some((torus, object)),
+            _ => None,
+        }
+    }
+
+    /// Shows four queries the tori of `seen`, which need not be shown any more; the rays of `members` are meant.
+    #[inline(always)]
+    fn show_rings(
+        &self,
+        cube: &DirectionCube,
+        rays: [&Ray; 4],
+        nearest: &mut [Nearest; 4],
+        seen: &mut [u64; 4],
+        members: u32,
+    ) {
+        let mut rest = (seen[0] | seen[1] | seen[2] | seen[3]) & cube.rings;
+        let within = [nearest[0].within(), nearest[1].within(), nearest[2].within(), nearest[3].within()];
+        while rest != 0 {
+            let place = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let Some((torus, object)) = self.ring(cube, place) else { continue };
+            let members = members & take_out(seen, place);
+            if members == 0 {
+                continue;
+            }
+            let told = vectorize(AskFour::<true> { torus, rays, within, members });
+            for i in 0..4 {
+                if told.meet >> i & 1 == 1 {
+                    nearest[i].offer(object, Hit::inside(told.t[i], 0, 0));
+                } else if told.doubt >> i & 1 == 1 {
+                    let _ = nearest[i].visit(rays[i], object, torus);
+                }
+            }
         }
     }
 
@@ -353,6 +409,63 @@ impl Geometry {
             length: length[i],
             seen: seen[i],
         })
+    }
+
+    /// Which of the four ways, of those of `members`, certainly meet an opaque torus, one bit each: then they are blocked. They
+    /// leave these objects. About the others [`blocked_on`](Geometry::blocked_on) need not ask the tori again that are certain.
+    #[inline(always)]
+    pub fn blocked_by_tori(
+        &self,
+        cube: &DirectionCube,
+        ways: &mut [Way; 4],
+        members: u32,
+        left: [u32; 4],
+        screens: &[Screen],
+    ) -> u32 {
+        let mut seen = [0; 4];
+        for i in 0..4 {
+            let way = &ways[i];
+            if members >> i & 1 == 1 && way.held && way.valid {
+                seen[i] = way.seen & !cube.bits.get(left[i] as usize).copied().unwrap_or(0);
+            }
+        }
+        let mut rest = (seen[0] | seen[1] | seen[2] | seen[3]) & cube.rings;
+        let mut blocked = 0;
+        while rest != 0 {
+            let place = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let Some((torus, object)) = self.ring(cube, place) else { continue };
+            if screens.get(object as usize).is_some_and(|screen| *screen != Screen::Opaque) {
+                continue;
+            }
+            let members = take_out(&mut seen, place) & !blocked;
+            if members == 0 {
+                continue;
+            }
+            let rays = [&ways[0].ray, &ways[1].ray, &ways[2].ray, &ways[3].ray];
+            let within = [Interval::new(0.0, 1.0); 4];
+            let told = vectorize(AskFour::<false> { torus, rays, within, members });
+            blocked |= told.meet;
+            for (i, way) in ways.iter_mut().enumerate() {
+                if (members & !told.doubt) >> i & 1 == 1 {
+                    way.seen &= !(1 << place);
+                }
+            }
+        }
+        blocked
+    }
+
+    /// Which of the four ways, which leave these objects, certainly meet nothing, one bit each, of those that are not blocked
+    /// [by tori](Geometry::blocked_by_tori). Those of `outside` leave on the outside.
+    #[inline(always)]
+    pub fn are_free(cube: &DirectionCube, ways: &[Way; 4], left: [u32; 4], outside: u32) -> u32 {
+        let mut free = 0;
+        for i in 0..4 {
+            let (way, left) = (&ways[i], cube.bits.get(left[i] as usize).copied().unwrap_or(0));
+            let leaves = left & (cube.flat | if outside >> i & 1 == 1 { cube.convex } else { 0 }) != 0;
+            free |= u32::from(way.held & way.valid & leaves & (way.seen & !left == 0)) << i;
+        }
+        free
     }
 
     /// The rest of [`blocked_towards`](Geometry::blocked_towards) for a ray that leaves `object`.
@@ -401,6 +514,17 @@ impl Geometry {
     }
 }
 
+/// Takes an object out of four sets; those that it was in, one bit each.
+#[inline(always)]
+fn take_out(sets: &mut [u64; 4], place: usize) -> u32 {
+    let mut members = 0;
+    for (i, set) in sets.iter_mut().enumerate() {
+        members |= ((*set >> place & 1) as u32) << i;
+        *set &= !(1 << place);
+    }
+    members
+}
+
 /// The ray from a place to the point of a [`DirectionCube`], and what the cube says of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
@@ -445,11 +569,29 @@ impl Vectorized for SeenMany<'_> {
             let windows = cube.windows.of_four(largest);
             let square = direction.dot(direction);
             let length = square.sqrt().to_array();
-            let (square, seen) = (square.to_array(), cube.seen_four(direction));
+            let (square, mut seen) = (square.to_array(), cube.seen_four(direction));
+            if (seen[0] | seen[1] | seen[2] | seen[3]) & cube.rings != 0 && within.len() == 4 {
+                let mut nearest = [0, 1, 2, 3].map(|i| Nearest::new(within[i], windows[i], None));
+                let mut members = valid;
+                for (i, within) in within.iter().enumerate() {
+                    members &= !(u32::from(!(within.min >= 0.0 && within.min < within.max)) << i);
+                }
+                geometry.show_rings(cube, [a, b, c, d], &mut nearest, &mut seen, members);
+                for (i, (ray, found)) in rays.iter().zip(found).enumerate() {
+                    if members >> i & 1 == 1 {
+                        let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
+                        geometry.nearest_seen(cube, ray, nearest[i], length, seen[i], found);
+                    } else {
+                        *found = geometry.nearest(ray, within[i]);
+                    }
+                }
+                continue;
+            }
             for (i, ((ray, within), found)) in rays.iter().zip(within).zip(found).enumerate() {
                 if valid >> i & 1 == 1 && within.min >= 0.0 && within.min < within.max {
                     let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
-                    geometry.nearest_seen(cube, ray, *within, windows[i], length, seen[i], found);
+                    let nearest = Nearest::new(*within, windows[i], None);
+                    geometry.nearest_seen(cube, ray, nearest, length, seen[i], found);
                 } else {
                     *found = geometry.nearest(ray, *within);
                 }
@@ -594,9 +736,18 @@ mod tests {
             let Blocked(geometry, cube, from) = self;
             let start = from.map(|from| from.ray(DVec3::ZERO).0.origin);
             let start = Vector::new(lanes, start.each_ref());
-            let ways = Geometry::four_towards(cube, start);
+            let mut ways = Geometry::four_towards(cube, start);
+            let left = from.map(|from| from.object);
+            let outside = (0..4).map(|i| u32::from(from[i].side == Side::Outside) << i).sum();
+            let before = ways;
+            let blocked = geometry.blocked_by_tori(cube, &mut ways, 15, left, &[]);
+            let free = Geometry::are_free(cube, &ways, left, outside) & !blocked;
             core::array::from_fn(|i| {
-                geometry.blocked_on(cube, &ways[i], from[i].object, || from[i], &[], &mut |_| {})
+                let ask = |way| geometry.blocked_on(cube, way, left[i], || from[i], &[], &mut |_| {});
+                let answer = ask(&before[i]);
+                assert_eq!(answer, blocked >> i & 1 == 1 || ask(&ways[i]));
+                assert!(!answer || free >> i & 1 == 0);
+                answer
             })
         }
     }

@@ -2,6 +2,7 @@
 
 use super::frame::Window;
 use super::rings::Together;
+use super::store::Run;
 use super::{Found, Geometry};
 use crate::{Departure, Hit, Interval, Primitive, Ray, Shape};
 use core::cmp::Ordering;
@@ -13,6 +14,11 @@ pub(super) trait Query {
     const NEAREST_FIRST: bool = true;
     /// Hits from this parameter on do not matter any more.
     fn limit(&self) -> f64;
+    /// Shows it tori of the store; false if it wants to see them one by one.
+    #[inline(always)]
+    fn defer(&mut self, _tori: Run) -> bool {
+        false
+    }
     /// Shows it a shape; breaks when nothing more needs to be seen.
     fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()>;
 }

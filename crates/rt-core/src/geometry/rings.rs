@@ -4,6 +4,7 @@ use super::frame::PACKET;
 use super::query::Query;
 use super::store::Store;
 use crate::kernel::{Lanes, Vectorized};
+use crate::shape::Torus;
 use crate::shape::torus::together::{Found, Pair, Waiting, alone};
 use crate::{Hit, Interval, Ray};
 use core::ops::ControlFlow;
@@ -39,6 +40,12 @@ impl Rings {
         self.waiting.clear();
     }
 
+    /// Whether so many more pairs can wait.
+    #[inline(always)]
+    pub fn has_room_for(&self, more: usize) -> bool {
+        self.count + more <= self.pairs.len()
+    }
+
     /// The rays of `mask` may meet the torus; before, there were not [many](Rings::are_many).
     #[inline(always)]
     pub fn add(&mut self, index: usize, mut mask: u32) {
@@ -57,6 +64,55 @@ impl Rings {
     #[inline(always)]
     pub fn are_many(&self) -> bool {
         self.count >= MANY
+    }
+}
+
+/// What four rays find of one torus.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Told {
+    /// The rays that meet it, one bit each.
+    pub meet: u32,
+    /// Those for which only [`Primitive::hit`](crate::Primitive::hit) can tell.
+    pub doubt: u32,
+    /// The parameters of the first crossings.
+    pub t: [f64; 4],
+}
+
+/// Asks of four rays, of which `members` are meant, one bit each, whether they meet one torus, and where if `PLACES`.
+pub(super) struct AskFour<'a, const PLACES: bool> {
+    pub torus: &'a Torus,
+    pub rays: [&'a Ray; 4],
+    pub within: [Interval; 4],
+    pub members: u32,
+}
+
+impl<const PLACES: bool> Vectorized for AskFour<'_, PLACES> {
+    type Output = Told;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Told {
+        let AskFour { torus, rays: [a, b, c, d], within, members } = self;
+        let pairs = [
+            Pair { torus, ray: a, within: within[0] },
+            Pair { torus, ray: b, within: within[1] },
+            Pair { torus, ray: c, within: within[2] },
+            Pair { torus, ray: d, within: within[3] },
+        ];
+        let mut waiting = Waiting::NONE;
+        let mut told = Told { doubt: waiting.add(lanes, pairs, [0, 1, 2, 3], members), ..Told::default() };
+        if waiting.count() == 0 {
+            return told;
+        }
+        let found = waiting.take(lanes, PLACES);
+        for place in 0..4 {
+            let ray = found.names[place] as usize & 3;
+            told.meet |= (found.meet >> place & 1) << ray;
+            told.doubt |= (found.doubt >> place & 1) << ray;
+            if found.meet >> place & 1 == 1 {
+                told.t[ray] = found.t[place];
+            }
+        }
+        told
     }
 }
 

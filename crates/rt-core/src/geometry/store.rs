@@ -204,6 +204,9 @@ macro_rules! store {
             /// Shows the shapes of the run to the query, until it has seen enough.
             #[inline(always)]
             pub fn visit<Q: Query>(&self, run: Run, ray: &Ray, query: &mut Q) -> ControlFlow<()> {
+                if run.kind == Self::RING && query.defer(run) {
+                    return ControlFlow::Continue(());
+                }
                 match run.kind {
                     $($index => self.$field.visit(run, ray, query),)*
                     _ => ControlFlow::Continue(()),
