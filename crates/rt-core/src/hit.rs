@@ -68,6 +68,17 @@ impl Hit {
         Hit { t, place: NonZeroU64::MIN.saturating_add(u64::from(part) << 32 | u64::from(root)) }
     }
 
+    /// A part and a root, as tables keep them.
+    pub(crate) const fn place(part: u32, root: u32) -> Option<NonZeroU64> {
+        NonZeroU64::new(((part as u64) << 32 | root as u64) + 1)
+    }
+
+    /// A hit whose parameter is known to lie inside the interval, of a part and a root from a table.
+    #[inline(always)]
+    pub(crate) fn at(t: f64, place: NonZeroU64) -> Hit {
+        Hit { t, place }
+    }
+
     /// The only crossing with a shape of one part, if that is met: without a branch.
     #[inline(always)]
     pub(crate) fn only(t: f64, meets: bool) -> Option<Hit> {

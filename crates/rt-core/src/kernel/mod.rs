@@ -30,7 +30,11 @@ pub use pair::{Pair, Pairs};
 pub use real::{Four, Real, Vector};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
-pub use triple::{Triple, Which};
+#[cfg(test)]
+pub(crate) use triple::PairedSlabs;
+#[cfg(all(test, target_arch = "x86_64", feature = "std"))]
+pub(crate) use triple::wide::WideSlabs;
+pub(crate) use triple::{Clipped, Planes, SlabLanes, clip};
 
 /// Runs the computation with the widest lanes of the [`level`] in use.
 #[inline(always)]

@@ -1,6 +1,7 @@
 //! What the instruction sets have in common.
 
 use super::*;
+use crate::Ray;
 use crate::math::exp2i;
 use crate::testing::Random;
 use alloc::format;
@@ -131,43 +132,72 @@ fn pairs_are_two_numbers() {
     }
 }
 
-/// Of three numbers the same are told as of each by itself.
+/// Whatever the lanes, the same crossings are told as of each pair of planes by itself; NaN is only known to be there.
 #[test]
-fn triples_are_three_numbers() {
-    let numbers = [0.0, -0.0, 1.5, -3.7, 1e-310, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
-    let triple = |v: [f64; 3]| Triple { x: v[0], y_z: Pair::new(v[1], v[2]) };
-    let all = |v: Triple| [v.x, v.y_z.low(), v.y_z.high()];
-    let which = |v: [bool; 3]| u32::from(v[0]) + 4 * u32::from(v[1]) + 8 * u32::from(v[2]);
-    let greater = |a: f64, b: f64| if a > b { a } else { b };
-    let lesser = |a: f64, b: f64| if a < b { a } else { b };
-    let count = numbers.len();
-    for case in 0..count.pow(3) {
-        let v = [case, case / count, case / count / count].map(|k| numbers[k % count]);
-        let w = [v[1], v[2], v[0]];
-        let (p, q) = (triple(v), triple(w));
-        let same = |t: Triple, f: fn(f64, f64) -> f64| {
-            assert_eq!(all(t).map(bits), [0, 1, 2].map(|k| bits(f(v[k], w[k]))), "{v:?}");
-        };
-        same(p - q, |a, b| a - b);
-        same(p * q, |a, b| a * b);
-        same(p.min(q), lesser);
-        same(p.max(q), greater);
-        assert_eq!(p.is_nan(q), v.into_iter().any(f64::is_nan));
-        assert_eq!(p.is_nan(triple([1.0; 3])), p.is_nan(q));
-        assert_eq!(p.is_finite(), v.into_iter().all(f64::is_finite));
-        if !p.is_nan(q) {
-            assert!(p.least() == v.into_iter().fold(f64::INFINITY, f64::min));
-            assert!(p.greatest() == v.into_iter().fold(f64::NEG_INFINITY, f64::max));
-            let all = triple([f64::INFINITY; 3]).at_least(1.0);
-            assert_eq!(all.and(p.negative()).bits(), which(v.map(f64::is_sign_negative)));
-        }
-        for limit in [1e-310, 1.5, f64::INFINITY] {
-            let (least, most) = (p.at_least(limit), p.at_most(limit));
-            assert_eq!(least.bits(), which(v.map(|x| x >= limit)));
-            assert_eq!(most.bits(), which(v.map(|x| !(x > limit))));
-            assert_eq!(least.and(most).bits(), least.bits() & most.bits());
-        }
+fn slabs_are_three_pairs_of_planes() {
+    fn told<S: SlabLanes>(planes: &Planes, ray: &Ray) -> (bool, usize, [u64; 2], usize, usize) {
+        let slabs = S::new(planes, ray);
+        let (entry, leave) = slabs.ends();
+        // Signs of zeros may differ.
+        let ends = [bits(entry + 0.0), bits(leave + 0.0)];
+        let entered = if entry > 0.0 { slabs.entered(16) } else { 0 };
+        let left = if leave > 0.0 { slabs.left(16) } else { 0 };
+        (slabs.are_doubtful(), slabs.back(), ends, entered, left)
     }
+    let numbers = [0.0, -0.0, 1.5, -3.7, 1e-310, -1.5e-308, f64::INFINITY, f64::NAN];
+    let mut random = Random::new(5);
+    let [mut doubts, mut ties] = [0; 2];
+    for _ in 0..40_000 {
+        let (low, high) = (random.in_cube() - 1.0, random.in_cube() + 1.0);
+        let mut ray = Ray::new(random.in_cube() * 4.0, random.in_cube());
+        for axis in 0..3 {
+            match random.below(12) {
+                0 => ray.direction[axis] = numbers[random.below(8) as usize],
+                1 => ray.origin[axis] = numbers[random.below(8) as usize],
+                2 => ray.origin[axis] = [low, high][random.below(2) as usize][axis],
+                // To a corner.
+                3 => ray.direction = low - ray.origin,
+                _ => {}
+            }
+        }
+        let planes = Planes([[low.x, low.x, low.y, low.z], [high.x, high.x, high.y, high.z]]);
+        let (mut is_nan, mut subnormal, mut back) = (false, false, 0);
+        let mut all = [[0.0; 2]; 3];
+        let pairs = [3, 4, 8];
+        for k in 0..3 {
+            let (o, d) = (ray.origin[k], ray.direction[k]);
+            let [a, b] = [low[k], high[k]].map(|plane| (o - plane) * (-1.0 / d));
+            is_nan |= a.is_nan() || b.is_nan();
+            subnormal |= d.is_subnormal();
+            back |= usize::from(d.is_sign_negative()) << k;
+            all[k] = [a.min(b), a.max(b)];
+        }
+        let entry = all[0][0].max(all[1][0]).max(all[2][0]);
+        let leave = all[0][1].min(all[1][1]).min(all[2][1]);
+        let steps = |t: f64| t.to_bits() as i64;
+        let which = |is: &dyn Fn([f64; 2]) -> bool| -> usize {
+            all.into_iter().zip(pairs).map(|(t, pair)| pair * usize::from(is(t))).sum::<usize>()
+        };
+        let entered = which(&|[near, _]| near > 0.0 && steps(entry) - steps(near) < 16);
+        let left = which(&|[_, far]| steps(far) - steps(leave) < 16);
+        let (entered, left) = (entered * usize::from(entry > 0.0), left * usize::from(leave > 0.0));
+        let right = (subnormal, back, [bits(entry + 0.0), bits(leave + 0.0)], entered, left);
+        let check = |told: (bool, usize, [u64; 2], usize, usize)| {
+            if is_nan {
+                assert!(told.0, "{planes:?} {ray:?}");
+            } else {
+                assert_eq!(told, right, "{planes:?} {ray:?}");
+            }
+        };
+        check(told::<PairedSlabs>(&planes, &ray));
+        #[cfg(all(target_arch = "x86_64", feature = "std"))]
+        if level() >= Level::Avx2 {
+            check(told::<WideSlabs>(&planes, &ray));
+        }
+        doubts += u32::from(is_nan || subnormal);
+        ties += u32::from(!is_nan && ![0, 3, 4, 8].contains(&entered));
+    }
+    assert!(doubts > 1000 && ties > 300, "{doubts} {ties}");
 }
 
 /// Once detected, the quick question and the full one have the same answer.

@@ -9,11 +9,12 @@ use super::flat::{self, LEAST_CERTAIN, U};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
-use crate::kernel::{Pair, Pairs, Product, Task, Triple, Which, run};
+use crate::kernel::{Clipped, Planes, Product, SlabLanes, Task, clip, run};
 use crate::math::{exp2i, exponent, greater, lesser};
 use crate::scaled::{checked_point, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
 use core::cmp::Ordering;
+use core::num::NonZeroU64;
 use glam::{DMat3, DVec2, DVec3};
 
 /// A solid box, along the world's axes or turned. It may be flat.
@@ -29,8 +30,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// away from the face 5, and towards it), u to the right as seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
-    /// Its planes: those across x, the lower ones across y and z, the upper ones.
-    planes: Pairs<3>,
+    /// Its planes; of a turned one infinite ones, so that nothing is certain of it by these.
+    planes: Planes,
     turn: Option<Turn>,
 }
 
@@ -41,6 +42,7 @@ struct Turn {
     corner: DVec3,
     /// The box's own axes in the world.
     axes: [DVec3; 3],
+    size: DVec3,
 }
 
 const WORLD: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -57,31 +59,24 @@ impl Cuboid {
         if !min.cmple(max).all() {
             return Err(Error::Unordered { min, max });
         }
-        Ok(Cuboid { planes: Cuboid::in_pairs(min, max), turn: None })
+        Ok(Cuboid { planes: Cuboid::planes(min, max), turn: None })
     }
 
     #[inline(always)]
     fn min(&self) -> DVec3 {
-        let Pairs([[x, _], [y, z], _]) = self.planes;
-        DVec3::new(x, y, z)
+        let [_, x, y, z] = self.planes.0[0];
+        if self.turn.is_some() { DVec3::ZERO } else { DVec3::new(x, y, z) }
     }
 
     #[inline(always)]
     fn max(&self) -> DVec3 {
-        let Pairs([[_, x], _, [y, z]]) = self.planes;
-        DVec3::new(x, y, z)
+        let [_, x, y, z] = self.planes.0[1];
+        self.turn.as_ref().map_or(DVec3::new(x, y, z), |turn| turn.size)
     }
 
     /// As it keeps its planes.
-    fn in_pairs(min: DVec3, max: DVec3) -> Pairs<3> {
-        Pairs([[min.x, max.x], [min.y, min.z], [max.y, max.z]])
-    }
-
-    /// The lower planes and the upper ones.
-    #[inline(always)]
-    fn planes(&self) -> [Triple; 2] {
-        let Pairs([[min, max], _, _]) = self.planes;
-        [Triple { x: min, y_z: self.planes.get(1) }, Triple { x: max, y_z: self.planes.get(2) }]
+    fn planes(min: DVec3, max: DVec3) -> Planes {
+        Planes([[min.x, min.x, min.y, min.z], [max.x, max.x, max.y, max.z]])
     }
 
     /// The corner that was given as the least, in the world: the anchor of local coordinates.
@@ -108,9 +103,10 @@ impl Cuboid {
             return Cuboid::new(by.point(self.min()), by.point(self.max()));
         }
         let corner = checked_point("cuboid corner", by.point(self.corner()))?;
-        let max = checked_point("cuboid size", self.size() * by.scale())?;
+        let size = checked_point("cuboid size", self.size() * by.scale())?;
         let axes = self.axes().map(|axis| flat::unit(flat::doubles(by.direction(axis))));
-        Ok(Cuboid { planes: Cuboid::in_pairs(DVec3::ZERO, max), turn: Some(Turn { corner, axes }) })
+        let planes = Cuboid::planes(DVec3::NEG_INFINITY, DVec3::INFINITY);
+        Ok(Cuboid { planes, turn: Some(Turn { corner, axes, size }) })
     }
 
     /// Both crossings with the line, in double-double: which faces and where, for the rays in doubt.
@@ -127,44 +123,47 @@ impl Cuboid {
     /// loses two digits where the direction is beyond 2^1022. Positive numbers are ordered like their bits, and 7 u are 7 of
     /// their steps at most. So two whose bits are [`STEPS`] apart are in order, with negative ones below all. What underflows
     /// is below [`TINY`].
+    ///
+    /// Along an axis in which the ray does not move it lies between the planes, where the parameters are infinities that
+    /// decide nothing, or beside them, where both are one infinity. The inverse of a subnormal number may be infinite too, and
+    /// within a plane a parameter is NaN: then no crossing is certain, and no miss but by two numbers.
     #[inline(always)]
-    fn plainly(&self, ray: &Ray, within: Interval) -> Result<Option<Hit>, ()> {
-        let (o, d) = (ray.origin, ray.direction);
-        // Differences and inverses with the other sign: the origin is read once.
-        let backward = Triple { x: -1.0 / d.x, y_z: Pair::splat(-1.0) / Pair::new(d.y, d.z) };
-        let start = Triple { x: o.x, y_z: Pair::new(o.y, o.z) };
-        let [min, max] = self.planes();
-        let (a, b) = ((start - min) * backward, (start - max) * backward);
-        if !a.is_finite() && !is_simple(a, b, &d) {
-            return Err(());
-        }
-        if within.min.is_nan() | within.max.is_nan() {
-            return Err(());
-        }
-        let (near, far) = (a.min(b), a.max(b));
-        let (entry, leave) = (near.greatest(), far.least());
-        let [first, last, begin, end] = [entry, leave, within.min, within.max].map(|t| t.to_bits() as i64);
-        let until = last.min(end);
+    fn plainly<S: SlabLanes>(&self, ray: &Ray, within: Interval) -> Result<Option<Hit>, ()> {
+        let slabs = S::new(&self.planes, ray);
+        let (entry, leave) = slabs.ends();
+        let [first, until, begin] =
+            [entry, lesser(leave, within.max), within.min].map(|t| t.to_bits() as i64);
+        // As unsigned numbers, bits with that of the sign are the greatest. Less than this are negative numbers, and positive ones.
+        let is_finite = |negative: i64| (negative as u64) < SIGN | INFINITY;
         if first > TINY {
             if first - STEPS > begin {
                 if first + STEPS < until {
-                    let (face, back) = only(near.at_least(entry * (1.0 - 16.0 * U)), backward)?;
-                    return Ok(Some(Hit::inside(entry, face + u32::from(back), 0)));
-                } else if first - STEPS > until {
+                    if within.min.is_nan() | within.max.is_nan() || slabs.are_doubtful() {
+                        return Err(());
+                    }
+                    let place = PLACES[0][slabs.entered(STEPS) & 15][slabs.back() & 7].ok_or(())?;
+                    return Ok(Some(Hit::at(entry, place)));
+                } else if first - STEPS > until
+                    && ((first < INFINITY as i64 && is_finite(until)) || !slabs.are_doubtful())
+                {
                     return Ok(None);
                 }
             }
             return Err(());
         }
-        // As unsigned numbers, bits with that of the sign are the greatest.
-        let is_behind = |t: i64| t as u64 > (i64::MIN | TINY) as u64;
         if begin >= 0 {
-            if is_behind(last) {
-                return Ok(None);
+            if until < 0 {
+                return if is_finite(until) || !slabs.are_doubtful() { Ok(None) } else { Err(()) };
             }
-            if is_behind(first) && last > TINY && last - STEPS > begin && last + STEPS < end {
-                let (face, back) = only(far.at_most(leave * (1.0 + 16.0 * U)), backward)?;
-                return Ok(Some(Hit::inside(leave, face + u32::from(!back), 1)));
+            // Neither of NaN nor of an end that is NaN.
+            let is_behind = first as u64 > SIGN | TINY as u64;
+            let end = within.max.to_bits() as i64;
+            if is_behind && until > TINY && until - STEPS > begin && until + STEPS < end {
+                if slabs.are_doubtful() {
+                    return Err(());
+                }
+                let place = PLACES[1][slabs.left(STEPS) & 15][slabs.back() & 7].ok_or(())?;
+                return Ok(Some(Hit::at(leave, place)));
             }
         }
         Err(())
@@ -339,31 +338,30 @@ impl Slabs {
     }
 }
 
-/// Whether a ray that does not move along an axis meets or passes the planes across that for certain: directions are
-/// zero, or so large that their inverses are finite, and no plane is one that the ray runs within.
-#[inline(always)]
-fn is_simple(a: Triple, b: Triple, d: &DVec3) -> bool {
-    // Subnormal numbers have the bits from 1 to 2^52 - 1, and their sign; zero is the last in this order.
-    let is_subnormal = |d: f64| (d.to_bits() << 1).wrapping_sub(1) < (1 << 53) - 1;
-    !(is_subnormal(d.x) || is_subnormal(d.y) || is_subnormal(d.z) || a.is_nan(b))
-}
-
-/// Twice the only axis of those, and whether the direction goes back along it; `Err` where there are several.
-#[inline(always)]
-fn only(at: Which, backward: Triple) -> Result<(u32, bool), ()> {
-    let bits = at.bits();
-    if bits & (bits - 1) != 0 {
-        return Err(());
+/// Face and root of a crossing, by whether it leaves, the only pair of planes it may be of, and the axes along which the
+/// direction goes back; nothing for several pairs.
+static PLACES: [[[Option<NonZeroU64>; 8]; 16]; 2] = {
+    let mut places = [[[None; 8]; 16]; 2];
+    let pairs = [3, 4, 8];
+    let mut case = 0;
+    while case < 2 * 3 * 8 {
+        let (leaves, axis, backs) = (case % 2, case / 2 % 3, case / 6);
+        let upper = (backs >> axis & 1) ^ leaves;
+        places[leaves][pairs[axis]][backs] = Hit::place((2 * axis + upper) as u32, leaves as u32);
+        case += 1;
     }
-    // 1, 4 and 8 stand for the axes 0, 1 and 2.
-    Ok((bits >> 1, at.and(backward.negative()).bits() == 0))
-}
+    places
+};
 
 /// More than two parameters err together, in steps between neighbouring numbers, and two roundings.
 const STEPS: i64 = 16;
 
 /// More than all that underflow can take: the bits of 2^-900.
 const TINY: i64 = (1023 - 900) << 52;
+
+/// The bits of a sign, and of infinity.
+const SIGN: u64 = 1 << 63;
+const INFINITY: u64 = 0x7ff << 52;
 
 /// One crossing of the line: the face, and the parameter correctly rounded.
 #[derive(Clone, Copy, Debug)]
@@ -596,15 +594,20 @@ impl Piece for Face<'_> {
     }
 }
 
+impl Clipped for Cuboid {
+    #[inline(always)]
+    fn clipped<S: SlabLanes>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        match self.plainly::<S>(ray, within) {
+            Ok(hit) => hit,
+            Err(()) => self.hit_closely(ray, within),
+        }
+    }
+}
+
 impl Primitive for Cuboid {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        if self.turn.is_none()
-            && let Ok(hit) = self.plainly(ray, within)
-        {
-            return hit;
-        }
-        self.hit_closely(ray, within)
+        clip(self, ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -712,6 +715,7 @@ fn coordinate(v: DVec3, k: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::PairedSlabs;
 
     #[test]
     fn crossings_begin_with_the_hit_where_the_exit_is_in_doubt() {
@@ -843,6 +847,18 @@ mod tests {
         assert!(matches!(Cuboid::new([f64::NAN; 3], [1.0; 3]), Err(Error::NotFinite { .. })));
     }
 
+    /// By the few comparisons, the same in all lanes: crossings for certain, misses where either kind tells.
+    fn plainly(cuboid: &Cuboid, ray: &Ray, within: Interval) -> Result<Option<Hit>, ()> {
+        let found = cuboid.plainly::<PairedSlabs>(ray, within);
+        #[cfg(all(target_arch = "x86_64", feature = "std"))]
+        if crate::kernel::level() >= crate::kernel::Level::Avx2 {
+            let wide = cuboid.plainly::<crate::kernel::WideSlabs>(ray, within);
+            assert_eq!(found.ok().flatten(), wide.ok().flatten(), "{cuboid:?} {ray:?} {within:?}");
+            return found.or(wide);
+        }
+        found
+    }
+
     /// What must not become slow unseen, and must be the same: the few comparisons answer nearly all plain rays, as the
     /// slabs do; also rays along axes and within planes, and intervals that end at the very crossings.
     #[test]
@@ -877,7 +893,7 @@ mod tests {
             };
             let all = [Interval::LINE, Interval::FORWARD, Interval::new(end(), end())];
             for (number, within) in all.into_iter().enumerate() {
-                let found = cuboid.plainly(&ray, within);
+                let found = plainly(&cuboid, &ray, within);
                 if let (Ok(found), Ok(other)) = (found, cuboid.span(&ray).first(within)) {
                     assert_eq!(found, other, "{cuboid:?} {ray:?} {within:?}");
                 } else if let Ok(found) = found {
@@ -923,7 +939,7 @@ mod tests {
                 direction[k] *= [1.0, 1e-300, 1e300, 1.7e308][random.below(4) as usize];
             }
             let ray = Ray::new(origin, direction);
-            if let Ok(found) = cuboid.plainly(&ray, Interval::FORWARD) {
+            if let Ok(found) = plainly(&cuboid, &ray, Interval::FORWARD) {
                 let exact = cuboid.hit_exactly(&ray, Interval::FORWARD);
                 assert_eq!(found.map(key), exact.map(key), "{cuboid:?} {ray:?}");
                 assert!((t(found) - t(exact)).abs() <= 10.0 * U * t(exact), "{cuboid:?} {ray:?}");
