@@ -1,8 +1,7 @@
 //! Vectors of double-double numbers.
 
 use crate::double::{Double, two_difference, two_sum};
-use crate::kernel::{Product, Real, Vector};
-use crate::math::sqrt;
+use crate::kernel::{Four, Lanes, Product, Real, Twice, Vector};
 use core::ops::{Add, Sub};
 use glam::DVec3;
 
@@ -163,6 +162,18 @@ impl<R: Real> DoubleVector<R> {
         }
     }
 
+    /// The length: right to 2^-101 of itself.
+    #[inline(always)]
+    pub fn length<P: Product>(&self) -> Double<R> {
+        let ((x, x_low), (y, y_low), (z, z_low)) =
+            (squared::<P, R>(self.x), squared::<P, R>(self.y), squared::<P, R>(self.z));
+        let (s, s_low) = two_sum(x, y);
+        let (s, z_s) = two_sum(s, z);
+        let low = (s_low + z_s) + ((x_low + y_low) + z_low);
+        let root = s.sqrt();
+        Double::sum(root, (R::remainder::<P>(s, root, root) + low) * (s.all(0.5) / root))
+    }
+
     /// The leading parts.
     #[inline(always)]
     pub fn leading(self) -> Vector<R> {
@@ -174,6 +185,35 @@ impl<R: Real> DoubleVector<R> {
     pub fn plus(self, v: impl Into<Vector<R>>) -> Vector<R> {
         let v = v.into();
         Vector { x: (self.x + v.x).high, y: (self.y + v.y).high, z: (self.z + v.z).high }
+    }
+}
+
+impl<L: Lanes> DoubleVector<Four<L>> {
+    /// One vector in each lane.
+    #[inline(always)]
+    pub fn new(lanes: L, [a, b, c, d]: [&DoubleVector; 4]) -> Self {
+        DoubleVector {
+            x: Double {
+                high: Four::new(lanes, [a.x.high, b.x.high, c.x.high, d.x.high]),
+                low: Four::new(lanes, [a.x.low, b.x.low, c.x.low, d.x.low]),
+            },
+            y: Double {
+                high: Four::new(lanes, [a.y.high, b.y.high, c.y.high, d.y.high]),
+                low: Four::new(lanes, [a.y.low, b.y.low, c.y.low, d.y.low]),
+            },
+            z: Double {
+                high: Four::new(lanes, [a.z.high, b.z.high, c.z.high, d.z.high]),
+                low: Four::new(lanes, [a.z.low, b.z.low, c.z.low, d.z.low]),
+            },
+        }
+    }
+}
+
+impl<R> DoubleVector<Twice<R>> {
+    /// The vectors of both.
+    #[inline(always)]
+    pub fn both(a: DoubleVector<R>, b: DoubleVector<R>) -> Self {
+        DoubleVector { x: Double::both(a.x, b.x), y: Double::both(a.y, b.y), z: Double::both(a.z, b.z) }
     }
 }
 
@@ -216,18 +256,6 @@ impl DoubleVector {
     #[inline(always)]
     pub fn length_squared<P: Product>(self) -> Double {
         self.x.square::<P>() + self.y.square::<P>() + self.z.square::<P>()
-    }
-
-    /// The length: right to 2^-101 of itself.
-    #[inline(always)]
-    pub fn length<P: Product>(&self) -> Double {
-        let ((x, x_low), (y, y_low), (z, z_low)) =
-            (squared::<P, f64>(self.x), squared::<P, f64>(self.y), squared::<P, f64>(self.z));
-        let (s, s_low) = two_sum(x, y);
-        let (s, z_s) = two_sum(s, z);
-        let low = (s_low + z_s) + ((x_low + y_low) + z_low);
-        let root = sqrt(s);
-        Double::sum(root, (P::remainder(s, root, root) + low) * (0.5 / root))
     }
 
     /// The leading parts: the nearest `f64` of each coordinate.

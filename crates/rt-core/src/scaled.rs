@@ -90,6 +90,13 @@ pub(crate) struct ScaledFour<L: Lanes> {
 impl<L: Lanes> ScaledFour<L> {
     #[inline(always)]
     pub fn new(lanes: L, rays: [&Ray; 4], anchor: DVec3, unit: i32) -> Self {
+        let one = Four::new(lanes, [1.0; 4]);
+        Self::about(lanes, rays, Vector::all(one, anchor), one.all(exp2i(-unit)))
+    }
+
+    /// The same with an anchor in each lane, and two to the power of minus the unit.
+    #[inline(always)]
+    pub fn about(lanes: L, rays: [&Ray; 4], anchor: Vector<Four<L>>, per_unit: Four<L>) -> Self {
         let [a, b, c, d] = rays;
         let direction = Vector::new(lanes, [&a.direction, &b.direction, &c.direction, &d.direction]);
         let one = direction.x.all(1.0);
@@ -103,8 +110,7 @@ impl<L: Lanes> ScaledFour<L> {
             z: Four::if_less(direction.z.abs(), negligible, zero, direction.z),
         };
         let origin = Vector::new(lanes, [&a.origin, &b.origin, &c.origin, &d.origin]);
-        let relative = DoubleVector::difference(origin, Vector::all(one, anchor));
-        let relative = relative.scale_exact(one.all(exp2i(-unit)));
+        let relative = DoubleVector::difference(origin, anchor).scale_exact(per_unit);
         // Zero times a number is zero, unless the number is infinite or NaN.
         let (o, d) = (relative.leading(), direction);
         let nothing = (o.x + o.y + o.z) * zero + (d.x + d.y + d.z) * zero;
@@ -112,7 +118,7 @@ impl<L: Lanes> ScaledFour<L> {
             & binade.less(one.all(exp2i(300)))
             & o.largest().less(one.all(exp2i(900)))
             & nothing.less(one);
-        ScaledFour { relative, direction, power: one.all(exp2i(unit)) / binade, sound }
+        ScaledFour { relative, direction, power: one / per_unit / binade, sound }
     }
 }
 

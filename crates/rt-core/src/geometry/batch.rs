@@ -2,9 +2,11 @@
 //! one by one: the ways differ only in which boxes they pass over.
 
 use super::frame::{PACKET, Side, Window};
+use super::leaving::Leaving;
 use super::order::{Place, put_together};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
+use super::rings::{Rings, Together};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
@@ -19,7 +21,7 @@ const IN_FLIGHT: usize = 12;
 
 /// What is asked about each ray of a batch.
 trait Request {
-    type Query: Query;
+    type Query: Query + Together;
     type Answer;
     fn query(within: Interval, window: Window, skip: Option<u32>) -> Self::Query;
     /// The answer when the ray cannot hit anything.
@@ -132,6 +134,7 @@ fn block<R: Request, L: Lanes>(
         side: Side::EMPTY,
         queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
         active: 0,
+        rings: Rings::NONE,
     };
     for first in (0..count).step_by(PACKET) {
         let members = first..(first + PACKET).min(count);
@@ -306,11 +309,10 @@ impl Geometry {
         occluded: &mut [bool],
     ) {
         // The shapes that are left, first: what they block needs no search.
+        vectorize(Leaving { geometry: self, rays, within, from, occluded: &mut *occluded });
         let mut searched = Vec::with_capacity(rays.len());
-        let all = rays.iter().zip(within).zip(from).zip(occluded.iter_mut());
-        for (number, (((ray, within), from), occluded)) in all.enumerate() {
-            *occluded =
-                is_legal(ray, *within) && self.store.hit_leaving(&self.shapes, ray, *within, from).is_some();
+        let all = rays.iter().zip(within).zip(from).zip(occluded.iter());
+        for (number, (((ray, _), _), occluded)) in all.enumerate() {
             if !*occluded {
                 searched.push(Place::new(ray, number));
             }

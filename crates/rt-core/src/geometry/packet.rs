@@ -5,6 +5,7 @@
 
 use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
+use super::rings::{Rings, Settle, Together, settle};
 use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::{Child, Node};
@@ -29,6 +30,8 @@ pub(super) struct Packet<'a, Q> {
     pub queries: [Q; PACKET],
     /// The rays that take part, one bit each.
     pub active: u32,
+    /// The tori that they may meet.
+    pub rings: Rings,
 }
 
 /// The bits of these groups' rays.
@@ -177,7 +180,7 @@ fn bundle<L: Lanes>(lanes: L, side: &Side, groups: Range<usize>, box_size: f64) 
     (spread <= MOST_SPREAD).then_some(Bundle { shape, far, start, depth, groups })
 }
 
-impl<Q: Query> Packet<'_, Q> {
+impl<Q: Query + Together> Packet<'_, Q> {
     /// Shows each ray's query the shapes that the ray may hit, if there are enough rays, and they go side by side closely
     /// enough, all or one half. Returns those for which that was so, one bit each.
     #[inline(always)]
@@ -217,6 +220,7 @@ impl<Q: Query> Packet<'_, Q> {
     #[inline(always)]
     fn traverse<L: Lanes>(&mut self, lanes: L, geometry: &Geometry, bundle: &Bundle) {
         let beam = Beam::new(lanes, &bundle.shape);
+        self.rings.clear();
         let mut ends = Ends::new(lanes, &self.side, bundle);
         let fetch = geometry.tree.bytes() > CACHE;
         let mut room = Room::<STACK>::default();
@@ -283,6 +287,7 @@ impl<Q: Query> Packet<'_, Q> {
                     return;
                 }
             }
+            self.settle(lanes, geometry, bundle, &mut ends, true);
             return;
         }
     }
@@ -313,6 +318,16 @@ impl<Q: Query> Packet<'_, Q> {
             mask |= met << (8 * group);
         }
         mask &= self.active;
+        if run.kind == Store::RING {
+            for index in run.first..run.first + run.count {
+                self.rings.add(index, mask);
+                if self.rings.are_many() {
+                    self.settle(lanes, geometry, bundle, ends, false);
+                    mask &= self.active;
+                }
+            }
+            return;
+        }
         let mut changed = false;
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACKET - 1);
@@ -333,6 +348,43 @@ impl<Q: Query> Packet<'_, Q> {
         if changed {
             ends.most = greatest(lanes, &ends.depths);
         }
+    }
+}
+
+impl<Q: Query + Together> Packet<'_, Q> {
+    /// Tells the queries of the tori that wait; of `all`, or of those that make fours.
+    #[inline(always)]
+    fn settle<L: Lanes>(
+        &mut self,
+        lanes: L,
+        geometry: &Geometry,
+        bundle: &Bundle,
+        ends: &mut Ends,
+        all: bool,
+    ) {
+        let store = &geometry.store;
+        let (mut met, over) = settle(Settle {
+            rings: &mut self.rings,
+            store,
+            rays: self.rays,
+            queries: &mut self.queries,
+            all,
+        });
+        if met == 0 {
+            return;
+        }
+        self.active &= !over;
+        while met != 0 {
+            let i = met.trailing_zeros() as usize & (PACKET - 1);
+            met &= met - 1;
+            if over >> i & 1 == 1 {
+                ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
+            } else {
+                let limit = self.side.limit_of(i, self.queries[i].limit());
+                ends.set(i, limit, bundle.end(i, limit));
+            }
+        }
+        ends.most = greatest(lanes, &ends.depths);
     }
 }
 

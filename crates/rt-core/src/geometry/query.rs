@@ -1,6 +1,7 @@
 //! What is asked of the shapes that a ray may meet. No answer depends on the order in which they are seen.
 
 use super::frame::Window;
+use super::rings::Together;
 use super::{Found, Geometry};
 use crate::{Departure, Hit, Interval, Primitive, Ray, Shape};
 use core::cmp::Ordering;
@@ -87,6 +88,19 @@ impl Query for Nearest {
     }
 }
 
+impl Together for Nearest {
+    const PLACES: bool = true;
+    #[inline(always)]
+    fn asks(&self, object: u32) -> Option<Interval> {
+        (self.skip != Some(object)).then_some(self.within)
+    }
+    #[inline(always)]
+    fn meet(&mut self, object: u32, hit: Hit) -> ControlFlow<()> {
+        self.offer(object, hit);
+        ControlFlow::Continue(())
+    }
+}
+
 /// Which of the hits before a limit comes first: by refined parameter, then those that leave a solid before
 /// those that enter one, then by index.
 #[derive(Clone, Copy, Debug)]
@@ -166,6 +180,19 @@ impl Query for Any {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
+    }
+}
+
+impl Together for Any {
+    const PLACES: bool = false;
+    #[inline(always)]
+    fn asks(&self, object: u32) -> Option<Interval> {
+        (self.skip != Some(object) && !self.found).then_some(self.within)
+    }
+    #[inline(always)]
+    fn meet(&mut self, _: u32, _: Hit) -> ControlFlow<()> {
+        self.found = true;
+        ControlFlow::Break(())
     }
 }
 

@@ -1,8 +1,9 @@
-//! The records of many hits, four at a time where rays that are neighbours hit the same object.
+//! The records of many hits, four at a time where rays that are neighbours hit the same object, or any tori.
 
 use super::{Found, Geometry};
 use crate::kernel::{Lanes, Vectorized, vectorize};
-use crate::{Primitive, Ray, Shape, Surface};
+use crate::shape::Torus;
+use crate::{Hit, Primitive, Ray, Shape, Surface};
 
 /// How many hits ahead of its record the memory of an object is asked for. Only time depends on it: the records of four take
 /// longer than a fetch from memory, some 100 ns.
@@ -20,13 +21,15 @@ impl Vectorized for RecordMany<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let RecordMany { geometry, rays, found, surfaces } = self;
-        let fours = found.chunks(4).zip(rays.chunks(4)).zip(surfaces.chunks_mut(4));
-        for (number, ((found, rays), surfaces)) in fours.enumerate() {
+        let count = surfaces.len();
+        let mut rings = Rings { of: [None; 4], count: 0 };
+        let fours = found.chunks(4).zip(rays.chunks(4));
+        for (number, (found, four)) in fours.enumerate() {
             for soon in self.found.iter().skip(4 * number + AHEAD).take(4).flatten() {
                 geometry.prefetch(*soon);
             }
             if let ([Some(a), Some(b), Some(c), Some(d)], [ra, rb, rc, rd], [sa, sb, sc, sd]) =
-                (found, rays, &mut *surfaces)
+                (found, four, &mut surfaces[4 * number..(4 * number + 4).min(count)])
                 && a.object == b.object
                 && a.object == c.object
                 && a.object == d.object
@@ -38,19 +41,50 @@ impl Vectorized for RecordMany<'_> {
                     Shape::Plane(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
                     Shape::Cylinder(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
                     Shape::Cone(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
+                    Shape::Torus(s) => Torus::surface_each(lanes, [s; 4], rays, hits, [sa, sb, sc, sd]),
                     _ => {
-                        for ((surface, ray), hit) in surfaces.iter_mut().zip(rays).zip(hits) {
+                        for ((surface, ray), hit) in [sa, sb, sc, sd].into_iter().zip(rays).zip(hits) {
                             *surface = shape.surface(ray, hit);
                         }
                     }
                 }
                 continue;
             }
-            for ((found, ray), surface) in found.iter().zip(rays).zip(surfaces) {
-                if let Some(found) = *found {
-                    *surface = geometry.surface(ray, found);
+            for (place, found) in (4 * number..).zip(found) {
+                let Some(found) = *found else { continue };
+                match geometry.store.ring(&geometry.shapes, found.object) {
+                    Some(torus) => {
+                        rings.of[rings.count & 3] = Some((torus, found.hit, place));
+                        rings.count += 1;
+                        if rings.count == 4 {
+                            rings.tell(lanes, rays, surfaces);
+                        }
+                    }
+                    None => surfaces[place] = geometry.surface(&rays[place], found),
                 }
             }
+        }
+        for (torus, hit, place) in rings.of.into_iter().take(rings.count).flatten() {
+            surfaces[place] = torus.surface(&rays[place], hit);
+        }
+    }
+}
+
+/// Hits with tori, which wait until they are four; and the places of their rays and records.
+struct Rings<'a> {
+    of: [Option<(&'a Torus, Hit, usize)>; 4],
+    count: usize,
+}
+
+impl Rings<'_> {
+    #[inline(always)]
+    fn tell<L: Lanes>(&mut self, lanes: L, rays: &[Ray], surfaces: &mut [Surface]) {
+        self.count = 0;
+        if let [Some((ta, a, pa)), Some((tb, b, pb)), Some((tc, c, pc)), Some((td, d, pd))] = self.of
+            && let Ok(surfaces) = surfaces.get_disjoint_mut([pa, pb, pc, pd])
+        {
+            let rays = [&rays[pa], &rays[pb], &rays[pc], &rays[pd]];
+            Torus::surface_each(lanes, [ta, tb, tc, td], rays, [a, b, c, d], surfaces);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The shapes by kind, each kind in the order of the leaves: what a ray touches, without the width of [`Shape`].
 
 use super::query::Query;
-use crate::kernel::{Lanes, prefetch};
+use crate::kernel::{Lanes, prefetch, prefetch_lines};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
 use crate::{Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::sync::Arc;
@@ -77,6 +77,9 @@ macro_rules! store {
         impl Store {
             /// The kind of spheres.
             pub const BALL: u32 = 0;
+
+            /// The kind of tori.
+            pub const RING: u32 = 5;
 
             /// The bits of an index within a kind.
             const INDEX_BITS: u32 = 28;
@@ -179,7 +182,8 @@ macro_rules! store {
             pub fn prefetch_object(&self, shapes: &[Shape], object: u32) {
                 match self.place(object) {
                     $(($index, index) if index < self.$field.shapes.len() => {
-                        prefetch(&self.$field.shapes[index]);
+                        // A record takes all of it.
+                        prefetch_lines(&self.$field.shapes[index], 6);
                     })*
                     _ => {
                         if let Some(shape) = shapes.get(object as usize) {
@@ -220,6 +224,27 @@ store! {
     6 disks Disk Disk;
     7 triangles Triangle Triangle;
     8 customs Custom Arc<dyn Primitive>;
+}
+
+impl Store {
+    /// The torus of this index, and its object.
+    #[inline(always)]
+    pub fn torus(&self, index: usize) -> Option<(&Torus, u32)> {
+        Some((self.tori.shapes.get(index)?, *self.tori.objects.get(index)?))
+    }
+
+    /// The torus that an object is, which is one of `shapes`; none where it is something else.
+    #[inline(always)]
+    pub fn ring<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<&'a Torus> {
+        match self.place(object) {
+            (Self::RING, index) => self.tori.shapes.get(index),
+            (kind, _) if (kind as usize) < Self::KINDS => None,
+            _ => match shapes.get(object as usize) {
+                Some(Shape::Torus(torus)) => Some(torus),
+                _ => None,
+            },
+        }
+    }
 }
 
 #[cfg(test)]

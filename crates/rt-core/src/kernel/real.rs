@@ -11,6 +11,8 @@ use glam::DVec3;
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// What [`less`](Real::less) says where it is so in every lane.
+    const EVERY: u32;
     /// The same number in all lanes, of as many as `self` has.
     fn all(self, x: f64) -> Self;
     /// The square root, correctly rounded.
@@ -19,15 +21,22 @@ pub trait Real:
     fn abs(self) -> Self;
     /// The lanes in which `self < other`, one bit each, lane 0 the lowest.
     fn less(self, other: Self) -> u32;
+    /// The lanes in which `self <= other`.
+    fn at_most(self, other: Self) -> u32;
+    /// The number whose bits, as a whole number, are a third of those of this one, and `more`.
+    fn third_of_bits(self, more: u64) -> Self;
     /// `if a < b { then } else { otherwise }`.
     fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// `if a <= b { then } else { otherwise }`.
     fn if_at_most(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// [`Product::two_product`]; lanes bring a product of their own.
     fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self);
+    /// [`Product::remainder`], alike.
+    fn remainder<P: Product>(c: Self, a: Self, b: Self) -> Self;
 }
 
 impl Real for f64 {
+    const EVERY: u32 = 1;
     #[inline(always)]
     fn all(self, x: f64) -> f64 {
         x
@@ -45,6 +54,14 @@ impl Real for f64 {
         u32::from(self < other)
     }
     #[inline(always)]
+    fn at_most(self, other: f64) -> u32 {
+        u32::from(self <= other)
+    }
+    #[inline(always)]
+    fn third_of_bits(self, more: u64) -> f64 {
+        f64::from_bits(self.to_bits() / 3 + more)
+    }
+    #[inline(always)]
     fn if_less(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
         if a < b { then } else { otherwise }
     }
@@ -55,6 +72,10 @@ impl Real for f64 {
     #[inline(always)]
     fn two_product<P: Product>(a: f64, b: f64) -> (f64, f64) {
         P::two_product(a, b)
+    }
+    #[inline(always)]
+    fn remainder<P: Product>(c: f64, a: f64, b: f64) -> f64 {
+        P::remainder(c, a, b)
     }
 }
 
@@ -73,6 +94,12 @@ impl<L: Lanes> Four<L> {
     #[inline(always)]
     pub fn to_array(self) -> [f64; 4] {
         self.0.store4(self.1)
+    }
+
+    /// The lanes of the mask first, in their order; any of the others behind them.
+    #[inline(always)]
+    pub fn packed(self, mask: u32) -> Self {
+        Four(self.0, self.0.pack4(self.1, mask))
     }
 
     /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
@@ -113,6 +140,7 @@ impl<L: Lanes> Neg for Four<L> {
 }
 
 impl<L: Lanes> Real for Four<L> {
+    const EVERY: u32 = 15;
     #[inline(always)]
     fn all(self, x: f64) -> Self {
         Four(self.0, self.0.splat4(x))
@@ -130,6 +158,17 @@ impl<L: Lanes> Real for Four<L> {
         self.0.lt4(self.1, other.1)
     }
     #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        self.0.le4(self.1, other.1)
+    }
+    #[inline(always)]
+    fn third_of_bits(self, more: u64) -> Self {
+        let [a, b, c, d] = self.to_array();
+        let numbers =
+            [a.third_of_bits(more), b.third_of_bits(more), c.third_of_bits(more), d.third_of_bits(more)];
+        Four::new(self.0, numbers)
+    }
+    #[inline(always)]
     fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         Four(a.0, a.0.if_less4(a.1, b.1, then.1, otherwise.1))
     }
@@ -141,6 +180,88 @@ impl<L: Lanes> Real for Four<L> {
     fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self) {
         let (p, e) = a.0.two_product4(a.1, b.1);
         (Four(a.0, p), Four(a.0, e))
+    }
+    #[inline(always)]
+    fn remainder<P: Product>(c: Self, a: Self, b: Self) -> Self {
+        let (p, e) = Self::two_product::<P>(a, b);
+        (c - p) - e
+    }
+}
+
+/// Twice as many numbers: where each operation waits for the one before, two of them at a time take little longer than one.
+#[derive(Clone, Copy, Debug)]
+pub struct Twice<R>(pub R, pub R);
+
+macro_rules! twice {
+    ($name:ident $method:ident) => {
+        impl<R: Real> $name for Twice<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Twice(self.0.$method(other.0), self.1.$method(other.1))
+            }
+        }
+    };
+}
+twice!(Add add);
+twice!(Sub sub);
+twice!(Mul mul);
+twice!(Div div);
+
+impl<R: Real> Neg for Twice<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Twice(-self.0, -self.1)
+    }
+}
+
+impl<R: Real> Twice<R> {
+    const WIDTH: u32 = R::EVERY.count_ones();
+}
+
+impl<R: Real> Real for Twice<R> {
+    const EVERY: u32 = R::EVERY | R::EVERY << Self::WIDTH;
+    #[inline(always)]
+    fn all(self, x: f64) -> Self {
+        Twice(self.0.all(x), self.1.all(x))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Twice(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Twice(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.0.less(other.0) | self.1.less(other.1) << Self::WIDTH
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        self.0.at_most(other.0) | self.1.at_most(other.1) << Self::WIDTH
+    }
+    #[inline(always)]
+    fn third_of_bits(self, more: u64) -> Self {
+        Twice(self.0.third_of_bits(more), self.1.third_of_bits(more))
+    }
+    #[inline(always)]
+    fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Twice(R::if_less(a.0, b.0, then.0, otherwise.0), R::if_less(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn if_at_most(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Twice(R::if_at_most(a.0, b.0, then.0, otherwise.0), R::if_at_most(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self) {
+        let ((p, e), (q, f)) = (R::two_product::<P>(a.0, b.0), R::two_product::<P>(a.1, b.1));
+        (Twice(p, q), Twice(e, f))
+    }
+    #[inline(always)]
+    fn remainder<P: Product>(c: Self, a: Self, b: Self) -> Self {
+        Twice(R::remainder::<P>(c.0, a.0, b.0), R::remainder::<P>(c.1, a.1, b.1))
     }
 }
 
@@ -185,6 +306,14 @@ impl<L: Lanes> Vector<Four<L>> {
     pub fn to_array(self) -> [DVec3; 4] {
         let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
         [0, 1, 2, 3].map(|i| DVec3::new(x[i], y[i], z[i]))
+    }
+}
+
+impl<R> Vector<Twice<R>> {
+    /// The vectors of both.
+    #[inline(always)]
+    pub fn both(a: Vector<R>, b: Vector<R>) -> Self {
+        Vector { x: Twice(a.x, b.x), y: Twice(a.y, b.y), z: Twice(a.z, b.z) }
     }
 }
 

@@ -9,7 +9,7 @@ mod frustum;
 mod meeting;
 mod plane;
 mod sphere;
-mod torus;
+pub(crate) mod torus;
 mod triangle;
 
 pub use cone::Cone;

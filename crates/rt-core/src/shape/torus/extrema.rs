@@ -1,6 +1,6 @@
 //! The extrema of the depressed quartic: the real zeros of `x^3 + P x + Q`.
 
-use crate::math::sqrt;
+use crate::kernel::Real;
 
 /// The zero of greatest absolute value of `x^3 + p x + q`, to about 2^-38 of itself, to a rounding or two of it where
 /// there are three.
@@ -10,39 +10,56 @@ use crate::math::sqrt;
 /// polynomial of degree four, 1e-5 from it. Otherwise a guess within a third. Newton's method does the rest: each
 /// step squares the relative error or better, 5e-6 twice, 0.3 four times.
 #[inline(always)]
-pub(super) fn outermost(p: f64, q: f64) -> f64 {
+pub(super) fn outermost<R: Real>(p: R, q: R) -> R {
+    let (zero, two) = (q.all(0.0), q.all(2.0));
     let size = q.abs();
-    let w = sqrt(if p < 0.0 { p * (-1.0 / 3.0) } else { 0.0 });
-    let full = 2.0 * w * w * w;
-    let (mut y, steps) = if size <= full {
-        let c = if full > 0.0 { size / full } else { 0.0 };
-        let cosine = 1.732_060_864_045_381_9
-            + c * (0.332_823_443_575_192_6
-                + c * (-0.091_843_866_261_527_45
-                    + c * (0.035_024_377_150_418_12 - c * 0.008_070_797_433_308_624)));
-        (w * cosine, 2)
-    } else {
+    let w = R::if_less(p, zero, p * q.all(-1.0 / 3.0), zero).sqrt();
+    let full = two * w * w * w;
+    // The lanes with three zeros; what others need is computed only if there are others.
+    let triple = size.at_most(full);
+    let mut y = zero;
+    if triple != 0 {
+        let c = R::if_less(zero, full, size / full, zero);
+        let cosine = q.all(1.732_060_864_045_381_9)
+            + c * (q.all(0.332_823_443_575_192_6)
+                + c * (q.all(-0.091_843_866_261_527_45)
+                    + c * (q.all(0.035_024_377_150_418_12) - c * q.all(0.008_070_797_433_308_624))));
+        y = w * cosine;
+    }
+    if triple != R::EVERY {
         let root = rough_cube_root(size);
         // p < 0: hyperbolic cosine, with v = cbrt(2 c): y = w (v + 1 / v). p >= 0: exact for p = 0 and for large p.
-        (if p < 0.0 { root + w * w / root } else { size / (p + root * root) }, 4)
-    };
-    for _ in 0..steps {
-        let square = y * y;
-        y = (2.0 * square * y + size) / (3.0 * square + p);
+        let numerator = R::if_less(p, zero, w * w, size);
+        let denominator = R::if_less(p, zero, root, p + root * root);
+        let quotient = numerator / denominator;
+        let single = R::if_less(p, zero, root + quotient, quotient);
+        y = R::if_at_most(size, full, y, single);
     }
-    // Both zero: all extrema fall together at the origin, and the step was 0 / 0.
-    if y.is_nan() {
-        y = 0.0;
+    y = step(p, size, y);
+    y = step(p, size, y);
+    if triple != R::EVERY {
+        let further = step(p, size, y);
+        let further = step(p, size, further);
+        y = R::if_at_most(size, full, y, further);
     }
-    if q > 0.0 { -y } else { y }
+    // NaN where both are zero: all extrema fall together at the origin, and the step was 0 / 0.
+    y = R::if_at_most(y, y, y, zero);
+    R::if_less(zero, q, -y, y)
+}
+
+/// A step of Newton's method for `y^3 + p y = size`.
+#[inline(always)]
+fn step<R: Real>(p: R, size: R, y: R) -> R {
+    let square = y * y;
+    (y.all(2.0) * square * y + size) / (y.all(3.0) * square + p)
 }
 
 /// The cube root of a positive normal number to 6 %: a third of the exponent and mantissa, taken as a logarithm.
 #[inline(always)]
-fn rough_cube_root(x: f64) -> f64 {
+fn rough_cube_root<R: Real>(x: R) -> R {
     // Two thirds of the bits of 1, less what balances the error of the linear logarithm.
     const OFFSET: u64 = 0x2a9f_7893_782d_a1ce;
-    f64::from_bits(x.to_bits() / 3 + OFFSET)
+    x.third_of_bits(OFFSET)
 }
 
 #[cfg(test)]

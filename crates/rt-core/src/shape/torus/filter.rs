@@ -9,11 +9,11 @@ use super::extrema::outermost;
 use super::line::Line;
 use super::record::HIT_ERROR;
 use crate::double::{Double, two_sum};
-use crate::kernel::{Product, Task};
-use crate::math::{exp2i, sqrt};
+use crate::double_vector::DoubleVector;
+use crate::kernel::{Product, Real, Task, Vector};
+use crate::math::exp2i;
 use crate::scaled::{ScaledRay, largest};
 use crate::{Hit, Interval};
-use glam::DVec3;
 
 /// What `f64` arithmetic can say about the crossings of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,88 +48,132 @@ pub(super) struct Filter<'a> {
     pub all: bool,
 }
 
+/// What this needs of a torus; or of one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ring<R> {
+    pub reach: R,
+    pub minor: R,
+    pub axis: Vector<R>,
+    pub squares: R,
+    pub twice: R,
+    pub hole: R,
+    pub rim: R,
+}
+
+impl Ring<f64> {
+    #[inline(always)]
+    pub fn of(torus: &Torus) -> Self {
+        Ring {
+            reach: torus.reach,
+            minor: torus.minor_scaled,
+            axis: torus.axis.into(),
+            squares: torus.squares.high,
+            twice: torus.twice.high,
+            hole: torus.hole,
+            rim: torus.rim,
+        }
+    }
+}
+
 /// A line about its closest approach: the same quantities as in [`Line`](super::line::Line).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RoughLine {
+pub(super) struct RoughLine<R = f64> {
     /// The parameter of the closest approach is the sum of the two.
-    pub first: f64,
-    pub rest: f64,
-    pub square: f64,
+    pub first: R,
+    pub rest: R,
+    pub square: R,
     /// The length of the direction, and one over it.
-    pub length: f64,
-    pub inverse: f64,
-    pub k: f64,
-    pub z: f64,
-    pub slope: f64,
-    pub p: f64,
-    pub q: f64,
+    pub length: R,
+    pub inverse: R,
+    pub k: R,
+    pub z: R,
+    pub slope: R,
+    pub p: R,
+    pub q: R,
 }
 
 /// The value of `f`, a quarter of its derivative, and a bound on the error of the value.
 #[derive(Clone, Copy, Debug)]
-struct Value {
-    value: f64,
-    slope: f64,
-    error: f64,
+pub(super) struct Value<R> {
+    pub value: R,
+    pub slope: R,
+    pub error: R,
 }
 
 /// From further away the sums below lose more than they are allowed to.
-const FAR: f64 = exp2i(40);
+pub(super) const FAR: f64 = exp2i(40);
 /// One rounding, relative.
 const U: f64 = exp2i(-53);
 
-impl RoughLine {
-    /// `None` when the line clearly passes outside the sphere about the torus.
+/// A coordinate of the place that is `first` directions away.
+#[inline(always)]
+fn advance<P: Product, R: Real>(x: Double<R>, d: R, first: R) -> R {
+    let (p, e) = R::two_product::<P>(first, d);
+    let (s, f) = two_sum(x.high, p);
+    s + (f + (e + x.low))
+}
+
+impl<R: Real> RoughLine<R> {
+    /// The line, and in which lanes it does not clearly pass outside the sphere about the torus; `None` where it does in all.
     ///
     /// `|m|` errs by at most 4 u of `R + r` for a line that passes within it: the sum is exact up to its last
     /// rounding, and the little that is left to go after the first step is known to 4 u.
     #[inline(always)]
-    pub fn new<P: Product>(torus: &Torus, ray: &ScaledRay) -> Option<RoughLine> {
-        let (d, w) = (ray.direction, ray.relative);
-        let far = w.high();
+    pub fn new<P: Product>(
+        ring: &Ring<R>,
+        relative: &DoubleVector<R>,
+        direction: Vector<R>,
+    ) -> Option<(Self, u32)> {
+        let (d, far) = (direction, relative.leading());
+        let one = ring.reach.all(1.0);
         let length_squared = d.dot(d);
-        let inverse_squared = 1.0 / length_squared;
+        let inverse_squared = one / length_squared;
         let first = -far.dot(d) * inverse_squared;
-        let advance = |high: f64, low: f64, d: f64| {
-            let (p, e) = P::two_product(first, d);
-            let (s, f) = two_sum(high, p);
-            s + (f + (e + low))
+        let near = Vector {
+            x: advance::<P, R>(relative.x, d.x, first),
+            y: advance::<P, R>(relative.y, d.y, first),
+            z: advance::<P, R>(relative.z, d.z, first),
         };
-        let near = DVec3::new(
-            advance(w.x.high, w.x.low, d.x),
-            advance(w.y.high, w.y.low, d.y),
-            advance(w.z.high, w.z.low, d.z),
-        );
         // Only the component across the line counts; along it the point may be off by what the scalar product and
         // the division err, 8 u of the distance, and some.
-        let reach = torus.reach + largest(far) * (16.0 * U);
-        if near.length_squared() > reach * reach * (1.0 + 16.0 * U) {
+        let reach = ring.reach + far.largest() * one.all(16.0 * U);
+        let outside = (reach * reach * one.all(1.0 + 16.0 * U)).less(near.dot(near));
+        if outside == R::EVERY {
             return None;
         }
         let rest = -near.dot(d) * inverse_squared;
         let m = near + d * rest;
-        let square = m.length_squared();
-        if square > torus.reach * torus.reach * (1.0 + 32.0 * U) {
+        let square = m.dot(m);
+        let outside = outside | (ring.reach * ring.reach * one.all(1.0 + 32.0 * U)).less(square);
+        if outside == R::EVERY {
             return None;
         }
-        let length = sqrt(length_squared);
-        let inverse = 1.0 / length;
-        let k = square - torus.squares.high;
-        let z = m.dot(torus.axis);
-        let slope = d.dot(torus.axis) * inverse;
-        let twice = torus.twice.high;
-        Some(RoughLine {
-            first,
-            rest,
-            square,
-            length,
-            inverse,
-            k,
-            z,
-            slope,
-            p: k + twice * slope * slope,
-            q: twice * z * slope,
-        })
+        let length = length_squared.sqrt();
+        let inverse = one / length;
+        let k = square - ring.squares;
+        let z = m.dot(ring.axis);
+        let slope = d.dot(ring.axis) * inverse;
+        let twice = ring.twice;
+        let p = k + twice * slope * slope;
+        let q = twice * z * slope;
+        let line = RoughLine { first, rest, square, length, inverse, k, z, slope, p, q };
+        Some((line, R::EVERY & !outside))
+    }
+
+    /// Where the line leaves the sphere about the torus, and a little more.
+    #[inline(always)]
+    pub fn end(&self, ring: &Ring<R>) -> R {
+        let s = ring.reach;
+        let zero = s.all(0.0);
+        let square = s * s - self.square;
+        (R::if_less(zero, square, square, zero) + s.all(64.0 * U) * s * s).sqrt()
+    }
+
+    /// What the parameters err: the sum's roundings, the first step's product with the exact rest, and the
+    /// distance, of which a little more is asked for.
+    #[inline(always)]
+    pub fn error_of_parameters(&self, end: R) -> R {
+        end.all(4.0 * U) * (self.first.abs() + self.rest.abs() + end * self.inverse)
     }
 
     /// `f` and its derivative at `x`, and how far the value may be off.
@@ -140,23 +184,24 @@ impl RoughLine {
     /// 16 u S since the two are perpendicular parts. `f` errs by these times its derivatives by `k` and `z` and by
     /// its own roundings; the rounded place of an extremum matters by less than u S^4 / 16.
     #[inline(always)]
-    fn value(&self, torus: &Torus, x: f64) -> Value {
+    pub fn value(&self, ring: &Ring<R>, x: R) -> Value<R> {
         let k = self.k + x * x;
         let z = self.z + x * self.slope;
-        let r = torus.minor_scaled;
-        let twice = torus.twice.high;
+        let r = ring.minor;
+        let twice = ring.twice;
         let gap = (r - z) * (r + z);
-        let s = torus.reach;
+        let s = ring.reach;
+        let (two, four) = (s.all(2.0), s.all(4.0));
         let square = k * k;
-        let error_k = 24.0 * U * s * s;
-        let error_z = 16.0 * U * s;
+        let error_k = s.all(24.0 * U) * s * s;
+        let error_z = s.all(16.0 * U) * s;
         Value {
-            value: square - 2.0 * twice * gap,
+            value: square - two * twice * gap,
             slope: k * x + twice * z * self.slope,
-            error: 2.0 * k.abs() * error_k
-                + 4.0 * twice * (z.abs() + error_z) * error_z
-                + 4.0 * U * (square + 2.0 * twice * gap.abs())
-                + 0.0625 * U * s * s * s * s,
+            error: two * k.abs() * error_k
+                + four * twice * (z.abs() + error_z) * error_z
+                + s.all(4.0 * U) * (square + two * twice * gap.abs())
+                + s.all(0.0625 * U) * s * s * s * s,
         }
     }
 
@@ -167,69 +212,196 @@ impl RoughLine {
     /// what a parameter errs, `error`, and twice what a hit may be off. A line along the slab gives infinities, or NaN,
     /// which bounds nothing.
     #[inline(always)]
-    fn stretch(&self, torus: &Torus, end: f64, within: Interval, per_unit: f64, error: f64) -> (f64, f64) {
-        let s = torus.reach;
-        let height = torus.minor_scaled + 32.0 * U * s;
-        let per_height = 1.0 / self.slope;
+    pub fn stretch(&self, ring: &Ring<R>, end: R, (min, max): (R, R), per_unit: R, error: R) -> (R, R) {
+        let s = ring.reach;
+        let height = ring.minor + s.all(32.0 * U) * s;
+        let per_height = s.all(1.0) / self.slope;
         let (enter, leave) = ((-height - self.z) * per_height, (height - self.z) * per_height);
-        let (enter, leave) = if enter > leave { (leave, enter) } else { (enter, leave) };
-        let margin = 2.0 * HIT_ERROR * s + error * self.length;
-        let place = |t: f64| ((t * per_unit - self.first) - self.rest) * self.length;
-        let later = |a: f64, b: f64| if a > b { a } else { b };
-        let sooner = |a: f64, b: f64| if a < b { a } else { b };
+        let (enter, leave) = (R::if_less(leave, enter, leave, enter), R::if_less(leave, enter, enter, leave));
+        let margin = s.all(2.0 * HIT_ERROR) * s + error * self.length;
         (
-            later(place(within.min) - margin, later(enter, -end)),
-            sooner(place(within.max) + margin, sooner(leave, end)),
+            later(self.place(min, per_unit) - margin, later(enter, -end)),
+            sooner(self.place(max, per_unit) + margin, sooner(leave, end)),
         )
     }
 
-    /// Whether a stretch of the line is certainly nearer to the axis than the tube, or farther away.
+    /// The distance from the closest approach of the place at this parameter, in the units of the given ray.
+    #[inline(always)]
+    fn place(&self, t: R, per_unit: R) -> R {
+        ((t * per_unit - self.first) - self.rest) * self.length
+    }
+
+    /// In which lanes a stretch of the line is certainly nearer to the axis than the tube, or farther away.
     ///
     /// The square of the distance from the axis, `|m|^2 + x^2 - z^2`, is convex along the line: greatest at an end, and
     /// least at the first where it grows there, at the last where it falls there. `|m|^2` errs by 11 u S^2, `x^2`, at most
     /// S^2, by 8 u of itself, `z^2` by 32 u S^2; and half its derivative by 20 u S, which counts along 2 S.
     #[inline(always)]
-    fn passes_the_tube(&self, torus: &Torus, from: f64, to: f64) -> bool {
-        let square = |x: f64| {
-            let z = self.z + x * self.slope;
-            (self.square + x * x - z * z, x - z * self.slope)
-        };
-        let ((first, growth), (last, last_growth)) = (square(from), square(to));
-        let most = if first > last { first } else { last };
-        let slack = 128.0 * U * torus.reach * torus.reach;
-        most < torus.hole - slack
-            || (growth > 0.0 && first > torus.rim + slack)
-            || (last_growth < 0.0 && last > torus.rim + slack)
+    pub fn passes_the_tube(&self, ring: &Ring<R>, from: R, to: R) -> u32 {
+        let ((first, growth), (last, last_growth)) = (self.axis_distance(from), self.axis_distance(to));
+        let most = later(first, last);
+        let (zero, slack) = (from.all(0.0), from.all(128.0 * U) * ring.reach * ring.reach);
+        let rim = ring.rim + slack;
+        most.less(ring.hole - slack)
+            | (zero.less(growth) & rim.less(first))
+            | (last_growth.less(zero) & rim.less(last))
+    }
+
+    /// The square of the distance from the axis, and half its derivative.
+    #[inline(always)]
+    fn axis_distance(&self, x: R) -> (R, R) {
+        let z = self.z + x * self.slope;
+        (self.square + x * x - z * z, x - z * self.slope)
     }
 
     /// An eighth of the second derivative.
     #[inline(always)]
-    fn bend(&self, x: f64) -> f64 {
-        0.5 * (3.0 * x * x + self.p)
+    pub fn bend(&self, x: R) -> R {
+        x.all(0.5) * (x.all(3.0) * x * x + self.p)
     }
 
+    /// The extrema: one, three times, or three, ascending; and in which lanes three.
+    #[inline(always)]
+    pub fn extrema(&self) -> ([R; 3], u32) {
+        let c = outermost(self.p, self.q);
+        let zero = c.all(0.0);
+        let discriminant = c.all(-3.0) * c * c - c.all(4.0) * self.p;
+        // Where rounding may have made it negative, two equal extrema do no harm.
+        let least = c.all(exp2i(-20)) * -(c * c);
+        let single = discriminant.less(least);
+        if single == R::EVERY {
+            return ([c, c, c], 0);
+        }
+        let root = R::if_less(zero, discriminant, discriminant, zero).sqrt();
+        let (a, b) = (c.all(-0.5) * (c + root), c.all(-0.5) * (c - root));
+        let negative = [c, a, b];
+        let positive = [a, b, c];
+        let mut all = negative;
+        for i in 0..3 {
+            let x = R::if_less(c, zero, negative[i], positive[i]);
+            all[i] = R::if_less(discriminant, least, c, x);
+        }
+        (all, R::EVERY & !single)
+    }
+
+    /// The extremum at `x`, and in which lanes its sign is certain, and that a crossing beside it will be found well enough.
+    ///
+    /// The slope at a crossing next to this extremum is at least that of the parabola, 4 sqrt(value bend), or a
+    /// quarter of it where the crossing is on the far side of an inflection; the crossing errs by the error
+    /// over the slope, of which a quarter of what `surface` relies on is allowed. All this depends on the ray
+    /// alone, never on the interval, and so does what is reported.
+    #[inline(always)]
+    pub fn extremum(&self, ring: &Ring<R>, x: R) -> (Extremum<R>, u32) {
+        let Value { value, error, .. } = self.value(ring, x);
+        let bend = x.all(4.0) * self.bend(x);
+        let certain = error.less(value.abs())
+            & (x.all(64.0) * error * error).at_most(x.all(HIT_ERROR * HIT_ERROR) * (value * bend).abs());
+        (Extremum { x, value, bend }, certain)
+    }
+
+    /// The parameter at the distance `x` from the closest approach: no less for a greater `x`.
+    #[inline(always)]
+    pub fn parameter_at(&self, x: R) -> R {
+        self.first + (self.rest + x * self.inverse)
+    }
+
+    /// The crossing between two extrema (or ends, whose values are NaN) of different sign. `inside` is one where it is the
+    /// lower one that is inside, zero where it is the other; `idle` is one in the lanes that are not meant, zero in the others.
+    #[inline(always)]
+    pub fn crossing(&self, ring: &Ring<R>, low: Extremum<R>, high: Extremum<R>, inside: R, idle: R) -> R {
+        let (zero, one, half) = (inside.all(0.0), inside.all(1.0), inside.all(0.5));
+        let (from_low, from_high) = (low.reach(), high.reach());
+        // From the nearer zero of the two parabolas; from the only one where one is NaN.
+        let from_high_end = R::if_at_most(from_low, from_high, low.x + from_low, high.x - from_high);
+        let start = R::if_at_most(from_high, from_high, from_high_end, low.x + from_low);
+        let (mut a, mut b) = (low.x, high.x);
+        let middle = half * (a + b);
+        let mut x = R::if_less(a, start, R::if_less(start, b, start, middle), middle);
+        // One in the lanes that are done.
+        let mut done = idle;
+        // Halving alone comes to an end after 53 steps and a few, Newton's method after four or five.
+        for _ in 0..60 {
+            #[cfg(test)]
+            crate::kernel::counted::step();
+            let Value { value, slope, error } = self.value(ring, x);
+            let here = R::if_less(value, zero, one, zero);
+            let unlike = (here - inside).abs();
+            a = R::if_less(unlike, half, x, a);
+            b = R::if_less(unlike, half, b, x);
+            let step = x.all(0.25) * value / slope;
+            let next = x - step;
+            // By the series of f about the new place, whose fourth derivative is 24, the value there is
+            // s^2 f'' / 2 + s^3 f''' / 3 + 3 s^4; a twentieth of the value's own error is enough.
+            let size = step.abs();
+            let left =
+                x.all(4.0) * self.bend(next).abs() + size * (x.all(8.0) * next.abs() + x.all(3.0) * size);
+            let enough = R::if_at_most(x.all(20.0) * (size * size * left), error, one, zero);
+            // Beyond the ends: the last place, if that is good enough, or the middle.
+            let (otherwise, otherwise_done) = (
+                R::if_at_most(value.abs(), error, x, half * (a + b)),
+                R::if_at_most(value.abs(), error, one, zero),
+            );
+            let within = R::if_less(a, next, R::if_less(next, b, one, zero), zero);
+            let moved = R::if_less(zero, within, next, otherwise);
+            let finished = R::if_less(zero, within, enough, otherwise_done);
+            x = R::if_less(zero, done, x, moved);
+            done = R::if_less(zero, done, one, finished);
+            if zero.less(done) == R::EVERY {
+                break;
+            }
+        }
+        x
+    }
+}
+
+impl RoughLine {
     /// The coefficients of the quartic, ascending, and rounded.
     pub fn coefficients(&self, torus: &Torus) -> [f64; 5] {
-        [self.value(torus, 0.0).value, 4.0 * self.q, 2.0 * self.p, 0.0, 1.0]
+        [self.value(&Ring::of(torus), 0.0).value, 4.0 * self.q, 2.0 * self.p, 0.0, 1.0]
+    }
+}
+
+/// The greater of two; the second where one is NaN.
+#[inline(always)]
+fn later<R: Real>(a: R, b: R) -> R {
+    R::if_less(b, a, a, b)
+}
+
+/// The lesser of two; the second where one is NaN.
+#[inline(always)]
+fn sooner<R: Real>(a: R, b: R) -> R {
+    R::if_less(a, b, a, b)
+}
+
+/// An extremum of `f`, or an end of the line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extremum<R> {
+    pub x: R,
+    /// NaN at the ends of the line, which are no extrema.
+    pub value: R,
+    /// Half the second derivative.
+    pub bend: R,
+}
+
+impl<R: Real> Extremum<R> {
+    #[inline(always)]
+    pub fn end(x: R) -> Self {
+        Extremum { x, value: x.all(f64::NAN), bend: x.all(f64::NAN) }
     }
 
-    /// The parameter at the distance `x` from the closest approach.
+    /// Where the parabola at the extremum is zero, as a distance from it; NaN for an end.
     #[inline(always)]
-    pub fn parameter_at(&self, x: f64) -> f64 {
-        self.first + (self.rest + x * self.inverse)
+    fn reach(&self) -> R {
+        (-self.value / self.bend).sqrt()
     }
 }
 
 /// An end of a stretch on which `f` is monotonic.
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    x: f64,
+    at: Extremum<f64>,
     /// What `x` lacks, where the node is known to double-double accuracy.
     low: f64,
-    /// NaN at the ends of the line, which are no extrema.
-    value: f64,
-    /// Half the second derivative.
-    bend: f64,
     inside: bool,
     sharp: bool,
 }
@@ -237,13 +409,7 @@ struct Node {
 impl Node {
     #[inline(always)]
     fn end(x: f64) -> Node {
-        Node { x, low: 0.0, value: f64::NAN, bend: f64::NAN, inside: false, sharp: false }
-    }
-
-    /// Where the parabola at the extremum is zero, as a distance from it; NaN for an end.
-    #[inline(always)]
-    fn reach(&self) -> f64 {
-        sqrt(-self.value / self.bend)
+        Node { at: Extremum::end(x), low: 0.0, inside: false, sharp: false }
     }
 }
 
@@ -268,7 +434,8 @@ fn sharpened<P: Product>(torus: &Torus, line: &Line, x: f64) -> Option<Node> {
     if value.abs() <= 2.0 * exact::uncertainty::<P>(torus, line, c) || value.is_nan() {
         return None;
     }
-    Some(Node { x: c.high, low: c.low, value, bend, inside: value < 0.0, sharp: true })
+    let at = Extremum { x: c.high, value, bend };
+    Some(Node { at, low: c.low, inside: value < 0.0, sharp: true })
 }
 
 impl Task for Filter<'_> {
@@ -281,44 +448,28 @@ impl Task for Filter<'_> {
         if largest(ray.relative.high()) > FAR || ray.power.abs() > 1000 {
             return Verdict::Doubt;
         }
-        let Some(line) = RoughLine::new::<P>(torus, ray) else { return MISS };
+        let ring = Ring::of(torus);
+        let Some((line, _)) = RoughLine::new::<P>(&ring, &ray.relative, ray.direction.into()) else {
+            return MISS;
+        };
         let unit = exp2i(ray.power);
-        let s = torus.reach;
-        // Where the line is inside the sphere about the torus, and a little more.
-        let end = sqrt((s * s - line.square).max(0.0) + 64.0 * U * s * s);
-        // What the parameters err: the sum's roundings, the first step's product with the exact rest, and the
-        // distance, of which a little more is asked below.
-        let error_t = 4.0 * U * (line.first.abs() + line.rest.abs() + end * line.inverse);
-        let (from, to) = line.stretch(torus, end, within, exp2i(-ray.power), 2.0 * error_t);
-        if from > to || line.passes_the_tube(torus, from, to) {
+        let end = line.end(&ring);
+        let error_t = line.error_of_parameters(end);
+        let ends = (within.min, within.max);
+        let (from, to) = line.stretch(&ring, end, ends, exp2i(-ray.power), 2.0 * error_t);
+        if from > to || line.passes_the_tube(&ring, from, to) != 0 {
             return MISS;
         }
 
-        let c = outermost(line.p, line.q);
-        let discriminant = -3.0 * c * c - 4.0 * line.p;
-        // Where rounding may have made it negative, two equal extrema do no harm.
-        let (extrema, count) = if discriminant < exp2i(-20) * -(c * c) {
-            ([c, 0.0, 0.0], 1)
-        } else {
-            let root = sqrt(discriminant.max(0.0));
-            let (a, b) = (-0.5 * (c + root), -0.5 * (c - root));
-            (if c < 0.0 { [c, a, b] } else { [a, b, c] }, 3)
-        };
-
+        let (extrema, triple) = line.extrema();
+        let count = if triple != 0 { 3 } else { 1 };
         // All signs first: the count must be certain.
         let mut nodes = [Node::end(-end), Node::end(end), Node::end(end), Node::end(end), Node::end(end)];
         let mut precise = None;
         for (node, &x) in nodes[1..].iter_mut().zip(extrema.iter().take(count)) {
-            let Value { value, error, .. } = line.value(torus, x);
-            // The slope at a crossing next to this extremum is at least that of the parabola, 4 sqrt(value bend), or a
-            // quarter of it where the crossing is on the far side of an inflection; the crossing errs by the error
-            // over the slope, of which a quarter of what `surface` relies on is allowed. All this depends on the ray
-            // alone, never on the interval, and so does what is reported.
-            let bend = 4.0 * line.bend(x);
-            let certain =
-                value.abs() > error && 64.0 * error * error <= HIT_ERROR * HIT_ERROR * (value * bend).abs();
-            *node = if certain {
-                Node { x, low: 0.0, value, bend, inside: value < 0.0, sharp: false }
+            let (at, certain) = line.extremum(&ring, x);
+            *node = if certain != 0 {
+                Node { at, low: 0.0, inside: at.value < 0.0, sharp: false }
             } else {
                 let precise = precise.get_or_insert_with(|| Line::of::<P>(torus, ray));
                 match sharpened::<P>(torus, precise, x) {
@@ -338,10 +489,10 @@ impl Task for Filter<'_> {
             let index = root;
             root += 1;
             // Clearly before the interval: not worth finding.
-            if (line.parameter_at(high.x) + error_t) * unit <= within.min {
+            if (line.parameter_at(high.at.x) + error_t) * unit <= within.min {
                 continue;
             }
-            let t = line.parameter_at(refine(torus, &line, &low, &high)) * unit;
+            let t = line.parameter_at(refine(&ring, &line, &low, &high)) * unit;
             if let Some(hit) = within.admit(t, 0, index) {
                 if let Some(slot) = hits.list.get_mut(index as usize) {
                     *slot = Some(hit);
@@ -359,47 +510,17 @@ impl Task for Filter<'_> {
 
 /// The crossing between two nodes of different sign.
 #[inline(always)]
-fn refine(torus: &Torus, line: &RoughLine, low: &Node, high: &Node) -> f64 {
-    let (from_low, from_high) = (low.reach(), high.reach());
-    let rising = from_high.is_nan() || from_low <= from_high;
-    let (near, offset) = if rising { (low, from_low) } else { (high, -from_high) };
-    if near.sharp {
-        let far = if rising { high.x - low.x } else { low.x - high.x };
-        return near.x + (near.low + beside(near, offset, far));
-    }
-    let (mut a, mut b) = (low.x, high.x);
-    let mut x = near.x + offset;
-    if !(x > a && x < b) {
-        x = 0.5 * (a + b);
-    }
-    // Halving alone comes to an end after 53 steps and a few, Newton's method after four or five.
-    for _ in 0..60 {
-        #[cfg(test)]
-        crate::kernel::counted::step();
-        let Value { value, slope, error } = line.value(torus, x);
-        if (value < 0.0) == low.inside {
-            a = x;
-        } else {
-            b = x;
-        }
-        let step = 0.25 * value / slope;
-        let next = x - step;
-        if next > a && next < b {
-            x = next;
-            // By the series of f about the new place, whose fourth derivative is 24, the value there is
-            // s^2 f'' / 2 + s^3 f''' / 3 + 3 s^4; a twentieth of the value's own error is enough.
-            let size = step.abs();
-            let left = 4.0 * line.bend(x).abs() + size * (8.0 * x.abs() + 3.0 * size);
-            if 20.0 * (size * size * left) <= error {
-                break;
-            }
-        } else if value.abs() <= error {
-            break;
-        } else {
-            x = 0.5 * (a + b);
+fn refine(ring: &Ring<f64>, line: &RoughLine, low: &Node, high: &Node) -> f64 {
+    if low.sharp | high.sharp {
+        let (from_low, from_high) = (low.at.reach(), high.at.reach());
+        let rising = from_high.is_nan() || from_low <= from_high;
+        let (near, offset) = if rising { (low, from_low) } else { (high, -from_high) };
+        if near.sharp {
+            let far = if rising { high.at.x - low.at.x } else { low.at.x - high.at.x };
+            return near.at.x + (near.low + beside(near, offset, far));
         }
     }
-    x
+    line.crossing(ring, low.at, high.at, if low.inside { 1.0 } else { 0.0 }, 0.0)
 }
 
 /// How far from a sharp extremum the crossing is that lies between it and the place `far` away, where the sign differs:
@@ -416,9 +537,9 @@ fn beside(node: &Node, guess: f64, far: f64) -> f64 {
     for _ in 0..120 {
         #[cfg(test)]
         crate::kernel::counted::step();
-        let cubic = 4.0 * node.x + y;
-        let value = node.value + y * y * (node.bend + y * cubic);
-        let slope = y * (2.0 * node.bend + y * (3.0 * cubic + y));
+        let cubic = 4.0 * node.at.x + y;
+        let value = node.at.value + y * y * (node.at.bend + y * cubic);
+        let slope = y * (2.0 * node.at.bend + y * (3.0 * cubic + y));
         if (value < 0.0) == node.inside {
             near = y;
         } else {
@@ -448,6 +569,12 @@ mod tests {
     use crate::kernel::run;
     use crate::testing::Random;
     use alloc::vec::Vec;
+    use glam::DVec3;
+
+    fn rough_line<P: Product>(torus: &Torus, ray: &ScaledRay) -> Option<RoughLine> {
+        let line = RoughLine::new::<P>(&Ring::of(torus), &ray.relative, ray.direction.into());
+        line.map(|(line, _)| line)
+    }
 
     /// What the rough line says of a place, and the precise one.
     struct Both<'a>(&'a Torus, &'a ScaledRay, f64);
@@ -462,7 +589,7 @@ mod tests {
             let h = exp2i(-6);
             let second =
                 ((at(x + h).0 + at(x - h).0) - at(x).0.scale_exact(2.0)).to_f64() / (h * h) - 2.0 * h * h;
-            Some((RoughLine::new::<P>(torus, ray)?, line, [at(x).0.to_f64(), at(x).1.to_f64(), second]))
+            Some((rough_line::<P>(torus, ray)?, line, [at(x).0.to_f64(), at(x).1.to_f64(), second]))
         }
     }
 
@@ -482,7 +609,7 @@ mod tests {
             let x = random.uniform(-1.0, 1.0) * s;
             let Some((rough, line, [value, slope, second])) = run(Both(&torus, &ray, x)) else { continue };
             count += 1;
-            let at = rough.value(&torus, x);
+            let at = rough.value(&Ring::of(&torus), x);
             assert!((at.value - value).abs() <= at.error, "{torus:?} {ray:?} {x}");
             assert!(at.error < 1000.0 * U * s * s * s * s, "{torus:?} {ray:?} {x}: {}", at.error);
             assert!((at.slope - slope).abs() < 1e-13 * s * s * s);
@@ -527,7 +654,7 @@ mod tests {
             let gap = torus.minor_scaled * torus.minor_scaled - z * z;
             let terms = k * k + 4.0 * torus.major_scaled * torus.major_scaled * gap.abs();
             let expected = worst(of_k, 0.0) + worst(0.0, of_z) + 4.0 * U * terms + 0.0625 * U * s * s * s * s;
-            let found = rough.value(&torus, x).error;
+            let found = rough.value(&Ring::of(&torus), x).error;
             assert!((found / expected - 1.0).abs() < 1e-4, "{torus:?} {ray:?} {x}: {found:e} {expected:e}");
         }
         assert!(count > 1000, "{count}");
@@ -539,10 +666,10 @@ mod tests {
         type Output = Option<(Node, f64, f64)>;
         fn run<P: Product>(self) -> Self::Output {
             let Sharp(torus, ray, off) = self;
-            let rough = RoughLine::new::<P>(torus, ray)?;
+            let rough = rough_line::<P>(torus, ray)?;
             let line = Line::of::<P>(torus, ray);
             let node = sharpened::<P>(torus, &line, outermost(rough.p, rough.q) + off)?;
-            let at = Double::sum(node.x, node.low);
+            let at = Double::sum(node.at.x, node.low);
             let (value, slope) = line.value::<P>(at);
             Some((node, value.to_f64(), slope.to_f64()))
         }
@@ -564,8 +691,8 @@ mod tests {
             count += 1;
             let s = torus.reach;
             assert!(slope.abs() <= exp2i(-55) * s * s * s, "{torus:?} {ray:?} {slope:e}");
-            assert!((value - node.value).abs() <= exp2i(-90) * s * s * s * s, "{value:e} {node:?}");
-            assert!(node.inside == (node.value < 0.0) && node.sharp);
+            assert!((value - node.at.value).abs() <= exp2i(-90) * s * s * s * s, "{value:e} {node:?}");
+            assert!(node.inside == (node.at.value < 0.0) && node.sharp);
         }
         assert!(count > 1000, "{count}");
     }
@@ -577,11 +704,13 @@ mod tests {
         impl Task for Passes<'_> {
             type Output = Option<(bool, usize)>;
             fn run<P: Product>(self) -> Self::Output {
-                let rough = RoughLine::new::<P>(self.0, self.1)?;
+                let rough = rough_line::<P>(self.0, self.1)?;
                 let line = Line::of::<P>(self.0, self.1);
                 let s = self.0.reach;
-                let (from, to) = rough.stretch(self.0, s, Interval::LINE, 1.0, 0.0);
-                let passes = rough.passes_the_tube(self.0, from, to);
+                let ring = Ring::of(self.0);
+                let ends = (f64::NEG_INFINITY, f64::INFINITY);
+                let (from, to) = rough.stretch(&ring, s, ends, 1.0, 0.0);
+                let passes = rough.passes_the_tube(&ring, from, to) != 0;
                 Some((passes, exact::crossings::<P>(self.0, &line).as_slice().len()))
             }
         }
@@ -651,10 +780,11 @@ mod tests {
             type Output = Option<((f64, f64), RoughLine, [f64; 2], Vec<f64>)>;
             fn run<P: Product>(self) -> Self::Output {
                 let Stretch(torus, ray, within) = self;
-                let rough = RoughLine::new::<P>(torus, ray)?;
+                let rough = rough_line::<P>(torus, ray)?;
                 let line = Line::of::<P>(torus, ray);
                 let per_unit = exp2i(-ray.power);
-                let stretch = rough.stretch(torus, torus.reach, within, per_unit, 0.0);
+                let stretch =
+                    rough.stretch(&Ring::of(torus), torus.reach, (within.min, within.max), per_unit, 0.0);
                 let ends =
                     [within.min, within.max].map(|t| line.distance::<P>(Double::from(t * per_unit)).to_f64());
                 let crossings = exact::crossings::<P>(torus, &line);

@@ -4,9 +4,10 @@ mod exact;
 mod extrema;
 mod filter;
 mod frame;
-mod leaving;
+pub(crate) mod leaving;
 mod line;
 mod record;
+pub(crate) mod together;
 
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
@@ -17,7 +18,7 @@ use crate::scaled::{
     ScaledRay, admit, checked_length, checked_point, largest, passes_outside, range_guard, times_power,
 };
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
-use filter::{Filter, RoughLine, Verdict};
+use filter::{Filter, Ring, RoughLine, Verdict};
 use frame::Frame;
 use glam::DVec3;
 use leaving::Leave;
@@ -194,7 +195,9 @@ impl Task for Approach<'_> {
 
     #[inline(always)]
     fn run<P: Product>(self) -> Option<RoughLine> {
-        RoughLine::new::<P>(self.torus, self.ray)
+        let Approach { torus, ray } = self;
+        let line = RoughLine::new::<P>(&Ring::of(torus), &ray.relative, ray.direction.into());
+        line.map(|(line, _)| line)
     }
 }
 

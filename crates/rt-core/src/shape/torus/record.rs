@@ -5,12 +5,12 @@ use super::exact::{self, Crossings};
 use super::line::Line;
 use crate::double::{Double, two_difference, two_sum};
 use crate::double_vector::DoubleVector;
-use crate::kernel::{Product, Task, run};
+use crate::kernel::{Dekker, Four, Lanes, Product, Real, Task, Vector, run};
 use crate::math::{exp2i, sqrt};
-use crate::scaled::{ScaledRay, error_radius, largest, times_power};
+use crate::scaled::{ScaledFour, ScaledRay, largest, radius_about, times_power};
 use crate::surface::Coordinates;
-use crate::{Hit, Surface};
-use glam::{DVec2, DVec3};
+use crate::{Hit, Primitive, Ray, Surface};
+use glam::DVec2;
 
 /// From the hit's own point: two Newton steps at most on the distance from the tube, in its square,
 ///
@@ -68,82 +68,236 @@ impl Direct<'_> {
     #[inline(always)]
     fn quickly<P: Product>(&self) -> Option<Surface> {
         let Direct(Near { torus, ray, hit }) = self;
-        let (major, minor) = (torus.major_scaled, torus.minor_scaled);
-        let axis = &torus.frame[2];
-        let d = ray.direction;
-        let square = d.dot(d);
-        let far = largest(ray.relative.high()) + 1.0;
-        let along = axis.high().dot(d);
+        let tube = Tube::of(torus);
+        let d = ray.direction.into();
         let mut t = Double::from(times_power(hit.t(), -ray.power));
         for _ in 0..2 {
-            let p = ray.relative.advanced::<P>(d, t);
-            let z = axis.inner::<P>(&p);
-            let away = p.less::<P>(axis, z);
-            let rho = away.length::<P>();
-            let out = rho - major;
-            let inverse = 1.0 / rho.high;
-            let outward = away.high().dot(d) * inverse;
-            let q = out.high * outward + z.high * along;
-            let per_excess = -0.5 / q;
-            let step = excess::<P>(out, z, minor) * per_excess;
-            let (q, size) = (q.abs(), step.abs());
-            // A crossing with an even index leads inward.
-            let inward = per_excess > 0.0;
-            let bend = square * (1.0 + 2.0 * major * inverse);
-            let way = t.high.abs();
-            let reach = 2.0 * size + HIT_ERROR + 4.0 * f64::EPSILON * (way + far);
-            let least = if way < minor { way } else { minor };
-            let sound = (minor <= major)
-                & (rho.high > exp2i(-4))
-                & (inward == hit.root().is_multiple_of(2))
-                & (2.0 * bend * reach < q)
-                & (exp2i(-26) * minor * far < q * least);
-            if !sound {
+            let step = Step::new::<P>(&tube, &ray.relative, d, t, u32::from(hit.root().is_multiple_of(2)));
+            if step.sound == 0 {
                 return None;
             }
-            t = Double::sum(t.high, t.low + step);
-            let enough = exp2i(-70) * least * q;
-            if (2.0 * bend * size * size < enough) & (exp2i(-48) * minor * square * size < enough) {
-                let near = |a: Double, d: f64| a.high + (a.low + d * step);
-                let across = d - axis.high() * along;
-                let across =
-                    DVec3::new(near(away.x, across.x), near(away.y, across.y), near(away.z, across.z));
-                let (out, z, rho) = (near(out, outward), near(z, along), near(rho, outward));
-                let normal = across * (out / (rho * minor)) + torus.axis * (z / minor);
-                let local = p.nudged(d, step);
-                // Three parts as above, each times |d| < 2^2.
-                let error = exp2i(-66) * minor;
-                let place = Place { local, normal, out, z, inner: false, error };
-                return Some(torus.finish(ray.unscale(t).to_f64(), place));
+            t = step.t;
+            if step.enough != 0 {
+                return Some(torus.finish(ray.unscale(t).to_f64(), step.place(&tube, d)));
             }
         }
         None
     }
 }
 
+impl Torus {
+    /// The records of four hits, each with a torus of its own: [`surface`](crate::Primitive::surface) for each.
+    #[inline(always)]
+    pub(crate) fn surface_each<L: Lanes>(
+        lanes: L,
+        tori: [&Torus; 4],
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        let [a, b, c, d] = tori;
+        let center = Vector::new(lanes, [&a.center, &b.center, &c.center, &d.center]);
+        let per_unit = Four::new(lanes, [exp2i(-a.scale), exp2i(-b.scale), exp2i(-c.scale), exp2i(-d.scale)]);
+        let ScaledFour { relative, direction, power, sound } =
+            ScaledFour::about(lanes, rays, center, per_unit);
+        let tube = Tube {
+            axis: DoubleVector::new(lanes, [&a.frame[2], &b.frame[2], &c.frame[2], &d.frame[2]]),
+            major: Four::new(lanes, [a.major_scaled, b.major_scaled, c.major_scaled, d.major_scaled]),
+            minor: Four::new(lanes, [a.minor_scaled, b.minor_scaled, c.minor_scaled, d.minor_scaled]),
+        };
+        let first = leading_of_four(lanes, [&a.frame[0], &b.frame[0], &c.frame[0], &d.frame[0]]);
+        let second = leading_of_four(lanes, [&a.frame[1], &b.frame[1], &c.frame[1], &d.frame[1]]);
+        let t = Four::new(lanes, [hits[0].t(), hits[1].t(), hits[2].t(), hits[3].t()]) / power;
+        let even = (hits[0].root() & 1)
+            | (hits[1].root() & 1) << 1
+            | (hits[2].root() & 1) << 2
+            | (hits[3].root() & 1) << 3;
+        // The lanes bring their own products.
+        let start = Double { high: t, low: t.all(0.0) };
+        let step = Step::new::<Dekker>(&tube, &relative, direction, start, 15 & !even);
+        let place = step.place(&tube, direction);
+        let done = Finished::new(&place, center, first, second, t.all(1.0) / per_unit);
+        let sound = sound & step.sound & step.enough;
+        let t = (step.t.high * power + step.t.low * power).to_array();
+        let (point, local, own) = (done.point.to_array(), done.local.to_array(), done.own.to_array());
+        let (object_point, normal) = (done.object_point.to_array(), place.normal.to_array());
+        let (out, error) = (place.out.to_array(), done.error.to_array());
+        for (i, surface) in surfaces.into_iter().enumerate() {
+            if sound >> i & 1 == 0 {
+                *surface = tori[i].surface(rays[i], hits[i]);
+                continue;
+            }
+            let ring = Coordinates::Ring(DVec2::new(own[i].x, own[i].y), DVec2::new(out[i], own[i].z));
+            surface.set(t[i], point[i], local[i], object_point[i], normal[i], ring, error[i]);
+        }
+    }
+}
+
+#[inline(always)]
+fn leading_of_four<L: Lanes>(lanes: L, [a, b, c, d]: [&DoubleVector; 4]) -> Vector<Four<L>> {
+    Vector {
+        x: Four::new(lanes, [a.x.high, b.x.high, c.x.high, d.x.high]),
+        y: Four::new(lanes, [a.y.high, b.y.high, c.y.high, d.y.high]),
+        z: Four::new(lanes, [a.z.high, b.z.high, c.z.high, d.z.high]),
+    }
+}
+
+/// What a step needs of a torus.
+struct Tube<R> {
+    axis: DoubleVector<R>,
+    major: R,
+    minor: R,
+}
+
+impl Tube<f64> {
+    #[inline(always)]
+    fn of(torus: &Torus) -> Self {
+        Tube { axis: torus.frame[2], major: torus.major_scaled, minor: torus.minor_scaled }
+    }
+}
+
+/// A step of Newton's method on the distance from the tube.
+struct Step<R> {
+    /// The parameter after it.
+    t: Double<R>,
+    /// Where it began: the place, its distance from the axis, and how it lies to the generating circle.
+    start: DoubleVector<R>,
+    away: DoubleVector<R>,
+    rho: Double<R>,
+    out: Double<R>,
+    z: Double<R>,
+    /// How fast the line goes away from the axis and along it.
+    outward: R,
+    along: R,
+    step: R,
+    /// In which lanes it leads to the crossing that is meant, and where nothing is left to do.
+    sound: u32,
+    enough: u32,
+}
+
+impl<R: Real> Step<R> {
+    /// `even` says in which lanes the index of the crossing is even.
+    #[inline(always)]
+    fn new<P: Product>(
+        tube: &Tube<R>,
+        relative: &DoubleVector<R>,
+        d: Vector<R>,
+        t: Double<R>,
+        even: u32,
+    ) -> Self {
+        let (axis, major, minor) = (&tube.axis, tube.major, tube.minor);
+        let (one, two) = (minor.all(1.0), minor.all(2.0));
+        let square = d.dot(d);
+        let far = relative.leading().largest() + one;
+        let along = axis.leading().dot(d);
+        let p = relative.advanced::<P>(d, t);
+        let z = axis.inner::<P>(&p);
+        let away = p.less::<P>(axis, z);
+        let rho = away.length::<P>();
+        let out = rho - major;
+        let inverse = one / rho.high;
+        let outward = away.leading().dot(d) * inverse;
+        let q = out.high * outward + z.high * along;
+        let per_excess = one.all(-0.5) / q;
+        let step = excess::<P, R>(out, z, minor) * per_excess;
+        let (q, size) = (q.abs(), step.abs());
+        // A crossing with an even index leads inward.
+        let inward = one.all(0.0).less(per_excess);
+        let bend = square * (one + two * major * inverse);
+        let way = t.high.abs();
+        let reach = two * size + one.all(HIT_ERROR) + one.all(4.0 * f64::EPSILON) * (way + far);
+        let least = R::if_less(way, minor, way, minor);
+        let sound = minor.at_most(major)
+            & one.all(exp2i(-4)).less(rho.high)
+            & !(inward ^ even)
+            & (two * bend * reach).less(q)
+            & (one.all(exp2i(-26)) * minor * far).less(q * least);
+        let limit = one.all(exp2i(-70)) * least * q;
+        let enough = (two * bend * size * size).less(limit)
+            & (one.all(exp2i(-48)) * minor * square * size).less(limit);
+        let t = Double::sum(t.high, t.low + step);
+        Step { t, start: p, away, rho, out, z, outward, along, step, sound, enough }
+    }
+
+    /// The place that it leads to.
+    #[inline(always)]
+    fn place(&self, tube: &Tube<R>, d: Vector<R>) -> Place<R> {
+        let (minor, step) = (tube.minor, self.step);
+        let axis = tube.axis.leading();
+        let across = d - axis * self.along;
+        let across = Vector {
+            x: near(self.away.x, across.x, step),
+            y: near(self.away.y, across.y, step),
+            z: near(self.away.z, across.z, step),
+        };
+        let out = near(self.out, self.outward, step);
+        let z = near(self.z, self.along, step);
+        let rho = near(self.rho, self.outward, step);
+        let normal = across * (out / (rho * minor)) + axis * (z / minor);
+        let local = self.start.nudged(d, step);
+        // Three parts as above, each times |d| < 2^2.
+        let error = minor.all(exp2i(-66)) * minor;
+        Place { local, normal, out, z, inner: false, error }
+    }
+}
+
+/// `a` a little further on.
+#[inline(always)]
+fn near<R: Real>(a: Double<R>, d: R, step: R) -> R {
+    a.high + (a.low + d * step)
+}
+
 /// A place on the torus, in its units.
-struct Place {
-    local: DoubleVector,
-    normal: DVec3,
+struct Place<R = f64> {
+    local: DoubleVector<R>,
+    normal: Vector<R>,
     /// The way to it from the generating circle: along the radius and along the axis.
-    out: f64,
-    z: f64,
+    out: R,
+    z: R,
     /// Whether it is on the inner sheet of a spindle.
     inner: bool,
     /// How far the true crossing can be.
-    error: f64,
+    error: R,
+}
+
+/// What a record says of a place, in the units of the world.
+struct Finished<R> {
+    point: Vector<R>,
+    local: Vector<R>,
+    error: R,
+    /// The place in the torus' own axes and units.
+    own: Vector<R>,
+    object_point: Vector<R>,
+}
+
+impl<R: Real> Finished<R> {
+    /// `first` and `second` are the first two of the own axes.
+    #[inline(always)]
+    fn new(place: &Place<R>, center: Vector<R>, first: Vector<R>, second: Vector<R>, unit: R) -> Self {
+        let flat = place.local.leading();
+        let own = Vector { x: flat.dot(first), y: flat.dot(second), z: place.z };
+        let world = place.local.scale_exact(unit);
+        let point = world.plus(center);
+        Finished {
+            point,
+            local: world.leading(),
+            error: radius_about(point, unit * place.error),
+            own,
+            object_point: own * unit,
+        }
+    }
 }
 
 /// `out^2 + z^2 - r^2`.
 #[inline(always)]
-fn excess<P: Product>(out: Double, z: Double, r: f64) -> f64 {
-    let (x, x_low) = P::two_product(out.high, out.high);
-    let (y, y_low) = P::two_product(z.high, z.high);
-    let (r, r_low) = P::two_product(r, r);
+fn excess<P: Product, R: Real>(out: Double<R>, z: Double<R>, r: R) -> R {
+    let (x, x_low) = R::two_product::<P>(out.high, out.high);
+    let (y, y_low) = R::two_product::<P>(z.high, z.high);
+    let (r, r_low) = R::two_product::<P>(r, r);
     let (s, s_low) = two_difference(x, r);
     let (v, v_low) = two_sum(s, y);
     let cross = out.high * out.low + z.high * z.low;
-    v + (v_low + (s_low + ((x_low + y_low) - r_low) + 2.0 * cross))
+    v + (v_low + (s_low + ((x_low + y_low) - r_low) + r.all(2.0) * cross))
 }
 
 impl Task for Near<'_> {
@@ -275,27 +429,25 @@ impl Torus {
             self.axis * if z.high < 0.0 { -1.0 } else { 1.0 }
         };
         let t = ray.unscale(parameter).to_f64();
-        self.finish(t, Place { local, normal, out: out.high, z: z.high, inner, error })
+        self.finish(t, Place { local, normal: normal.into(), out: out.high, z: z.high, inner, error })
     }
 
     /// The record of a place.
     #[inline(always)]
     fn finish(&self, t: f64, place: Place) -> Surface {
-        let Place { local, normal, out, z, inner, error } = place;
-        let flat = local.high();
-        let (x_own, y_own) = (flat.dot(self.frame[0].high()), flat.dot(self.frame[1].high()));
-        let (unit, own) = (exp2i(self.scale), DVec3::new(x_own, y_own, z));
-        let world = local.scale_exact(unit);
-        let point = world.plus_f64(self.center);
+        let [first, second] = [self.frame[0].high().into(), self.frame[1].high().into()];
+        let done = Finished::new(&place, self.center.into(), first, second, exp2i(self.scale));
+        let own = done.own;
         // On the inner sheet the tube is seen across the axis: half a turn further about it, and its outside lies
         // towards the axis.
-        let uv = if inner {
-            Coordinates::Ring(DVec2::new(-own.x, -own.y), DVec2::new(-out, own.z))
+        let uv = if place.inner {
+            Coordinates::Ring(DVec2::new(-own.x, -own.y), DVec2::new(-place.out, own.z))
         } else {
-            Coordinates::Ring(DVec2::new(own.x, own.y), DVec2::new(out, own.z))
+            Coordinates::Ring(DVec2::new(own.x, own.y), DVec2::new(place.out, own.z))
         };
-        let error = error_radius(point, unit * error);
-        Surface::new(t, point, world.high(), normal, error).with_coordinates(uv).with_object_point(own * unit)
+        Surface::new(t, done.point.into(), done.local.into(), place.normal.into(), done.error)
+            .with_coordinates(uv)
+            .with_object_point(done.object_point.into())
     }
 }
 
@@ -311,6 +463,7 @@ fn place_error(uncertainty: f64, slope: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     struct Quickly<'a>(Direct<'a>);
 
@@ -362,6 +515,50 @@ mod tests {
         }
         let [all, found] = count.map(f64::from);
         assert!(found > 0.93 * all && all > 4000.0, "{count:?}");
+    }
+
+    struct Together<'a>(&'a [(Torus, Ray, Hit)]);
+
+    impl crate::kernel::Vectorized for Together<'_> {
+        type Output = alloc::vec::Vec<Surface>;
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            let nowhere = Surface::new(0.0, DVec3::ZERO, DVec3::ZERO, DVec3::Y, 0.0);
+            let mut surfaces = alloc::vec![nowhere; self.0.len()];
+            for (four, surfaces) in self.0.chunks_exact(4).zip(surfaces.chunks_exact_mut(4)) {
+                let ([a, b, c, d], [sa, sb, sc, sd]) = (four, surfaces) else { continue };
+                let (tori, rays) = ([&a.0, &b.0, &c.0, &d.0], [&a.1, &b.1, &c.1, &d.1]);
+                Torus::surface_each(lanes, tori, rays, [a.2, b.2, c.2, d.2], [sa, sb, sc, sd]);
+            }
+            surfaces
+        }
+    }
+
+    /// Records of four hits are those one by one, all bits, in all lanes, also where some are in doubt.
+    #[test]
+    fn four_are_each() {
+        use crate::testing::Random;
+        use crate::{Interval, kernel};
+        let mut random = Random::new(7);
+        let mut hits = alloc::vec::Vec::new();
+        while hits.len() < 8000 {
+            let size = if random.once_in(6) { random.magnitude(-140.0, 140.0) } else { 1.0 };
+            let minor =
+                if random.once_in(4) { random.magnitude(-5.0, 0.5) } else { random.uniform(0.1, 0.9) };
+            let torus = Torus::new(random.in_cube() * size, random.direction(), size, minor * size).unwrap();
+            let target = torus.center + random.in_cube() * size;
+            let along = random.direction() * random.magnitude(-3.0, 3.0);
+            let ray = Ray::new(target - along.normalize() * (random.magnitude(-1.0, 5.0) * size), along);
+            torus.crossings(&ray, Interval::LINE, &mut |hit| hits.push((torus, ray, hit)));
+        }
+        hits.truncate(8000);
+        let wide = kernel::vectorize(Together(&hits));
+        let portable = kernel::Vectorized::run(Together(&hits), kernel::PortableLanes);
+        for (i, (torus, ray, hit)) in hits.iter().enumerate() {
+            let bits = |s: &Surface| alloc::format!("{s:?}");
+            let expected = bits(&torus.surface(ray, *hit));
+            assert_eq!(bits(&wide[i]), expected, "{torus:?} {ray:?} {hit:?}");
+            assert_eq!(bits(&portable[i]), expected, "{torus:?} {ray:?} {hit:?}");
+        }
     }
 
     /// Of the crossings in the same sense the nearest, not too far; of equally near ones that of the index.
