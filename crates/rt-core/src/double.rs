@@ -5,7 +5,7 @@
 //! plain products of the low parts), quotient 10 u^2, square root 4 u^2, all relative, in the ranges where
 //! [`Product::two_product`] is exact.
 
-use crate::kernel::{Product, Real};
+use crate::kernel::{Product, Real, Twice};
 use crate::math::sqrt;
 use core::ops::{Add, Neg, Sub};
 
@@ -136,6 +136,14 @@ impl<R: Real> Double<R> {
     #[inline(always)]
     pub fn to_f64(self) -> R {
         self.high + self.low
+    }
+}
+
+impl<R> Double<Twice<R>> {
+    /// The numbers of both.
+    #[inline(always)]
+    pub fn both(a: Double<R>, b: Double<R>) -> Self {
+        Double { high: Twice(a.high, b.high), low: Twice(a.low, b.low) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Vectors of double-double numbers.
 
 use crate::double::{Double, two_difference, two_sum};
-use crate::kernel::{Four, Lanes, Product, Real, Vector};
+use crate::kernel::{Four, Lanes, Product, Real, Twice, Vector};
 use core::ops::{Add, Sub};
 use glam::DVec3;
 
@@ -206,6 +206,14 @@ impl<L: Lanes> DoubleVector<Four<L>> {
                 low: Four::new(lanes, [a.z.low, b.z.low, c.z.low, d.z.low]),
             },
         }
+    }
+}
+
+impl<R> DoubleVector<Twice<R>> {
+    /// The vectors of both.
+    #[inline(always)]
+    pub fn both(a: DoubleVector<R>, b: DoubleVector<R>) -> Self {
+        DoubleVector { x: Double::both(a.x, b.x), y: Double::both(a.y, b.y), z: Double::both(a.z, b.z) }
     }
 }
 

@@ -5,6 +5,7 @@ use super::frame::{PACKET, Side, Window};
 use super::order::{Place, put_together};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
+use super::returning::Returning;
 use super::rings::{Rings, Together};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
@@ -308,11 +309,10 @@ impl Geometry {
         occluded: &mut [bool],
     ) {
         // The shapes that are left, first: what they block needs no search.
+        vectorize(Returning { geometry: self, rays, within, from, occluded: &mut *occluded });
         let mut searched = Vec::with_capacity(rays.len());
-        let all = rays.iter().zip(within).zip(from).zip(occluded.iter_mut());
-        for (number, (((ray, within), from), occluded)) in all.enumerate() {
-            *occluded =
-                is_legal(ray, *within) && self.store.hit_leaving(&self.shapes, ray, *within, from).is_some();
+        let all = rays.iter().zip(within).zip(from).zip(occluded.iter());
+        for (number, (((ray, _), _), occluded)) in all.enumerate() {
             if !*occluded {
                 searched.push(Place::new(ray, number));
             }

@@ -3,7 +3,7 @@
 use super::batch::IN_FLIGHT;
 use super::frame::{PACKET, Window};
 use super::query::{Nearest, Query};
-use super::rings::{Rings, Settle};
+use super::rings::{Rings, Settle, settle};
 use super::store::{Run, Store};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
@@ -101,12 +101,16 @@ fn defer_tori<L: Lanes>(
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
         queries[place] = query.nearest;
         if rings.are_many() {
-            let settle =
-                Settle { rings: &mut rings, store: &geometry.store, rays, queries: &mut queries, all: false };
-            vectorize(settle);
+            settle(Settle {
+                rings: &mut rings,
+                store: &geometry.store,
+                rays,
+                queries: &mut queries,
+                all: false,
+            });
         }
     }
-    vectorize(Settle { rings: &mut rings, store: &geometry.store, rays, queries: &mut queries, all: true });
+    settle(Settle { rings: &mut rings, store: &geometry.store, rays, queries: &mut queries, all: true });
     for (((ray, from), nearest), found) in rays.iter().zip(from).zip(&queries).zip(found) {
         *found = decided(geometry, ray, nearest, from);
     }

@@ -22,6 +22,7 @@ mod outline;
 mod packet;
 mod query;
 mod record;
+mod returning;
 mod rings;
 mod store;
 mod stream;

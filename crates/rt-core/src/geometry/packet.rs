@@ -5,13 +5,13 @@
 
 use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
-use super::rings::{Rings, Settle, Together};
+use super::rings::{Rings, Settle, Together, settle};
 use super::store::Store;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::{Child, Node};
 use super::{CACHE, Geometry};
 use crate::Ray;
-use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least, vectorize};
+use crate::kernel::{Beam, BeamShape, EightRays, Lanes, Room, at_least};
 use crate::math::exp2i;
 use core::ops::Range;
 
@@ -363,7 +363,7 @@ impl<Q: Query + Together> Packet<'_, Q> {
         all: bool,
     ) {
         let store = &geometry.store;
-        let (mut met, over) = vectorize(Settle {
+        let (mut met, over) = settle(Settle {
             rings: &mut self.rings,
             store,
             rays: self.rays,

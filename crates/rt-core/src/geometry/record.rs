@@ -1,4 +1,4 @@
-//! The records of many hits, four at a time where rays that are neighbours hit the same object.
+//! The records of many hits, four at a time where rays that are neighbours hit the same object, or any tori.
 
 use super::{Found, Geometry};
 use crate::kernel::{Lanes, Vectorized, vectorize};

@@ -1,11 +1,11 @@
-//! The tori that the rays of a packet may meet: they wait until there are enough of them to be asked about four at a time.
+//! The tori that the rays of a packet may meet: they wait until there are enough of them to be asked about eight at a time.
 
 use super::frame::PACKET;
 use super::query::Query;
 use super::store::Store;
-use crate::kernel::{Lanes, Vectorized};
+use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::shape::Torus;
-use crate::shape::torus::together::{Found, Pair, Waiting, alone};
+use crate::shape::torus::together::{Found, PAIRS, Pair, Told, Waiting, alone, with_one};
 use crate::{Hit, Interval, Ray};
 use core::ops::ControlFlow;
 
@@ -67,17 +67,6 @@ impl Rings {
     }
 }
 
-/// What four rays find of one torus.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Told {
-    /// The rays that meet it, one bit each.
-    pub meet: u32,
-    /// Those for which only [`Primitive::hit`](crate::Primitive::hit) can tell.
-    pub doubt: u32,
-    /// The parameters of the first crossings.
-    pub t: [f64; 4],
-}
-
 /// Asks of four rays, of which `members` are meant, one bit each, whether they meet one torus, and where if `PLACES`.
 pub(super) struct AskFour<'a, const PLACES: bool> {
     pub torus: &'a Torus,
@@ -91,38 +80,23 @@ impl<const PLACES: bool> Vectorized for AskFour<'_, PLACES> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Told {
-        let AskFour { torus, rays: [a, b, c, d], within, members } = self;
-        let pairs = [
-            Pair { torus, ray: a, within: within[0] },
-            Pair { torus, ray: b, within: within[1] },
-            Pair { torus, ray: c, within: within[2] },
-            Pair { torus, ray: d, within: within[3] },
-        ];
-        let mut waiting = Waiting::NONE;
-        let mut told = Told { doubt: waiting.add(lanes, pairs, [0, 1, 2, 3], members), ..Told::default() };
-        if waiting.count() == 0 {
-            return told;
-        }
-        let found = waiting.take(lanes, PLACES);
-        for place in 0..4 {
-            let ray = found.names[place] as usize & 3;
-            told.meet |= (found.meet >> place & 1) << ray;
-            told.doubt |= (found.doubt >> place & 1) << ray;
-            if found.meet >> place & 1 == 1 {
-                told.t[ray] = found.t[place];
-            }
-        }
-        told
+        with_one(lanes, self.torus, self.rays, self.within, self.members, PLACES)
     }
 }
 
-/// Asks about fours of pairs, or about all. Returns the rays that meet something and those that need not see more.
+/// Asks about pairs by eight, or about all. Returns the rays that meet something and those that need not see more.
 pub(super) struct Settle<'a, Q> {
     pub rings: &'a mut Rings,
     pub store: &'a Store,
     pub rays: &'a [Ray],
     pub queries: &'a mut [Q; PACKET],
     pub all: bool,
+}
+
+/// Not in place: it is called from several, and long.
+#[inline(never)]
+pub(super) fn settle<Q: Together>(settle: Settle<'_, Q>) -> (u32, u32) {
+    vectorize(settle)
 }
 
 impl<Q: Together> Vectorized for Settle<'_, Q> {
@@ -132,33 +106,36 @@ impl<Q: Together> Vectorized for Settle<'_, Q> {
     fn run<L: Lanes>(mut self, lanes: L) -> (u32, u32) {
         let mut told = (0, 0);
         let mut first = 0;
-        while first + 4 <= self.rings.count || (self.all && first < self.rings.count) {
+        while first + PAIRS <= self.rings.count || (self.all && first < self.rings.count) {
             let last = self.rings.count - 1;
-            let mut names = [0; 4];
-            for lane in 0..4 {
-                names[lane] = self.rings.pairs[(first + lane).min(last)];
+            let mut names = [0; PAIRS];
+            for (lane, name) in names.iter_mut().enumerate() {
+                *name = self.rings.pairs[(first + lane).min(last)];
             }
-            let mut members = (1 << (last + 1 - first).min(4)) - 1;
-            first += 4;
-            let (Some(a), Some(b), Some(c), Some(d)) =
-                (self.pair(names[0]), self.pair(names[1]), self.pair(names[2]), self.pair(names[3]))
-            else {
-                continue;
-            };
-            for (lane, asked) in [a.1, b.1, c.1, d.1].into_iter().enumerate() {
-                members &= !(u32::from(!asked) << lane);
+            let mut members = (1 << (last + 1 - first).min(PAIRS)) - 1;
+            first += PAIRS;
+            let Some((pair, asked)) = self.pair(names[0]) else { continue };
+            members &= !u32::from(!asked);
+            let mut pairs = [pair; PAIRS];
+            for (lane, &name) in names.iter().enumerate().skip(1) {
+                match self.pair(name) {
+                    Some((pair, true)) => pairs[lane] = pair,
+                    _ => members &= !(1 << lane),
+                }
             }
             if members == 0 {
                 continue;
             }
-            let doubt = self.rings.waiting.add(lanes, [a.0, b.0, c.0, d.0], names, members);
-            self.tell(Found { names, doubt, ..Found::default() }, &mut told);
-            if self.rings.waiting.count() >= 4 {
+            let doubt = self.rings.waiting.add(lanes, &pairs, &names, members);
+            if doubt != 0 {
+                self.tell(&Found::doubt(names, doubt), &mut told);
+            }
+            if self.rings.waiting.count() >= PAIRS {
                 let found = self.rings.waiting.take(lanes, Q::PLACES);
-                self.tell(found, &mut told);
+                self.tell(&found, &mut told);
             }
         }
-        // At most three are left.
+        // Less than eight are left.
         let left = self.rings.count.saturating_sub(first);
         for k in 0..left {
             self.rings.pairs[k] = self.rings.pairs[first + k];
@@ -166,7 +143,7 @@ impl<Q: Together> Vectorized for Settle<'_, Q> {
         self.rings.count = left;
         if self.all && self.rings.waiting.count() > 0 {
             let found = self.rings.waiting.take(lanes, Q::PLACES);
-            self.tell(found, &mut told);
+            self.tell(&found, &mut told);
         }
         told
     }
@@ -184,10 +161,10 @@ impl<'a, Q: Together> Settle<'a, Q> {
 
     /// Tells the queries what was found.
     #[inline(always)]
-    fn tell(&mut self, found: Found, (met, over): &mut (u32, u32)) {
+    fn tell(&mut self, found: &Found, (met, over): &mut (u32, u32)) {
         let mut left = found.meet | found.doubt;
         while left != 0 {
-            let lane = left.trailing_zeros() as usize & 3;
+            let lane = left.trailing_zeros() as usize & (PAIRS - 1);
             left &= left - 1;
             let name = found.names[lane];
             let place = name as usize % PACKET;

@@ -1,7 +1,7 @@
 //! The shapes by kind, each kind in the order of the leaves: what a ray touches, without the width of [`Shape`].
 
 use super::query::Query;
-use crate::kernel::{Lanes, prefetch};
+use crate::kernel::{Lanes, prefetch, prefetch_lines};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Torus, Triangle};
 use crate::{Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::sync::Arc;
@@ -182,7 +182,8 @@ macro_rules! store {
             pub fn prefetch_object(&self, shapes: &[Shape], object: u32) {
                 match self.place(object) {
                     $(($index, index) if index < self.$field.shapes.len() => {
-                        prefetch(&self.$field.shapes[index]);
+                        // A record takes all of it.
+                        prefetch_lines(&self.$field.shapes[index], 6);
                     })*
                     _ => {
                         if let Some(shape) = shapes.get(object as usize) {

@@ -18,6 +18,29 @@ pub(super) fn run<V: Vectorized>(task: V) -> V::Output {
     task.run(Avx2Lanes(()))
 }
 
+/// Where the halves of the lanes of a mask are, then those of lane 0.
+const PACKED: [[i32; 8]; 16] = {
+    let mut all = [[0; 8]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                all[mask][2 * count] = 2 * lane;
+                all[mask][2 * count + 1] = 2 * lane + 1;
+                count += 1;
+            }
+            lane += 1;
+        }
+        while count < 4 {
+            all[mask][2 * count + 1] = 1;
+            count += 1;
+        }
+        mask += 1;
+    }
+    all
+};
+
 // SAFETY of every intrinsic below: a value of `Avx2Lanes` exists only inside `run`, whose callers have detected
 // AVX2 and FMA. The loads and stores are unaligned ones on references to arrays of the right size.
 impl Lanes for Avx2Lanes {
@@ -199,6 +222,15 @@ impl Lanes for Avx2Lanes {
         // SAFETY: `self` proves AVX2; the pointer comes from an array of four u32.
         unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), _mm256_cvttpd_epi32(a)) };
         to
+    }
+    #[inline(always)]
+    fn pack4(self, a: __m256d, mask: u32) -> __m256d {
+        let order = &PACKED[mask as usize & 15];
+        // SAFETY: `self` proves AVX2; the pointer comes from a reference to eight i32.
+        unsafe {
+            let order = _mm256_loadu_si256(order.as_ptr().cast());
+            _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order))
+        }
     }
     #[inline(always)]
     fn le4(self, a: __m256d, b: __m256d) -> u32 {

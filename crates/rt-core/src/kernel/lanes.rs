@@ -78,6 +78,8 @@ pub trait Lanes: Copy {
     fn binade4(self, a: Self::D) -> Self::D;
     /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
     fn whole4(self, a: Self::D) -> [u32; 4];
+    /// The lanes of the mask first, in their order; any of the others behind them.
+    fn pack4(self, a: Self::D, mask: u32) -> Self::D;
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le4(self, a: Self::D, b: Self::D) -> u32;
     /// The lanes in which `a < b`, one bit each, lane 0 the lowest.
@@ -245,6 +247,16 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn whole4(self, a: [f64; 4]) -> [u32; 4] {
         a.map(|a| a as u32)
+    }
+    #[inline(always)]
+    fn pack4(self, a: [f64; 4], mask: u32) -> [f64; 4] {
+        let mut packed = a;
+        let mut count = 0;
+        for (lane, &number) in a.iter().enumerate() {
+            packed[count & 3] = number;
+            count += (mask >> lane & 1) as usize;
+        }
+        packed
     }
     #[inline(always)]
     fn le4(self, a: [f64; 4], b: [f64; 4]) -> u32 {

@@ -5,17 +5,23 @@ use alloc::vec::Vec;
 /// Asks for the first cache lines of a value that will be needed soon. Has no effect but on time.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
+    prefetch_lines(value, 4);
+}
+
+/// Asks for as many of the first cache lines of a value.
+#[inline(always)]
+pub fn prefetch_lines<T>(value: &T, most: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let start = (value as *const T).cast::<i8>();
-        for line in 0..core::mem::size_of::<T>().div_ceil(64).min(4) {
+        for line in 0..core::mem::size_of::<T>().div_ceil(64).min(most) {
             // SAFETY: every x86-64 has the instruction, which never faults; the address lies within `value`.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) }
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = value;
+    let _ = (value, most);
 }
 
 /// An empty vector with room for `capacity` items. On Linux the kernel is asked to back a large one with huge pages,

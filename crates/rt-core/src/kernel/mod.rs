@@ -24,10 +24,10 @@ mod triple;
 pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
-pub(crate) use memory::{prefetch, vec_on_large_pages};
+pub(crate) use memory::{prefetch, prefetch_lines, vec_on_large_pages};
 pub use packet::{Beam, BeamShape, EightRays};
 pub use pair::{Pair, Pairs};
-pub use real::{Four, Real, Vector};
+pub use real::{Four, Real, Twice, Vector};
 pub use stack::{Room, Stack};
 pub use task::{Dekker, Fused, Product, Solver, Task, run, run_portable, solve};
 #[cfg(test)]

@@ -25,6 +25,8 @@ pub trait Real:
     fn at_most(self, other: Self) -> u32;
     /// The number whose bits, as a whole number, are a third of those of this one, and `more`.
     fn third_of_bits(self, more: u64) -> Self;
+    /// One in the lanes of a mask, zero in the others.
+    fn ones(self, mask: u32) -> Self;
     /// `if a < b { then } else { otherwise }`.
     fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// `if a <= b { then } else { otherwise }`.
@@ -62,6 +64,10 @@ impl Real for f64 {
         f64::from_bits(self.to_bits() / 3 + more)
     }
     #[inline(always)]
+    fn ones(self, mask: u32) -> f64 {
+        f64::from(mask & 1)
+    }
+    #[inline(always)]
     fn if_less(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
         if a < b { then } else { otherwise }
     }
@@ -94,6 +100,12 @@ impl<L: Lanes> Four<L> {
     #[inline(always)]
     pub fn to_array(self) -> [f64; 4] {
         self.0.store4(self.1)
+    }
+
+    /// The lanes of the mask first, in their order; any of the others behind them.
+    #[inline(always)]
+    pub fn packed(self, mask: u32) -> Self {
+        Four(self.0, self.0.pack4(self.1, mask))
     }
 
     /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
@@ -163,6 +175,10 @@ impl<L: Lanes> Real for Four<L> {
         Four::new(self.0, numbers)
     }
     #[inline(always)]
+    fn ones(self, mask: u32) -> Self {
+        Four::new(self.0, ONES[mask as usize & 15])
+    }
+    #[inline(always)]
     fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         Four(a.0, a.0.if_less4(a.1, b.1, then.1, otherwise.1))
     }
@@ -179,6 +195,102 @@ impl<L: Lanes> Real for Four<L> {
     fn remainder<P: Product>(c: Self, a: Self, b: Self) -> Self {
         let (p, e) = Self::two_product::<P>(a, b);
         (c - p) - e
+    }
+}
+
+/// One in the lanes of a mask.
+const ONES: [[f64; 4]; 16] = {
+    let mut all = [[0.0; 4]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let mut lane = 0;
+        while lane < 4 {
+            all[mask][lane] = (mask >> lane & 1) as f64;
+            lane += 1;
+        }
+        mask += 1;
+    }
+    all
+};
+
+/// Twice as many numbers: where each operation waits for the one before, two of them at a time take little longer than one.
+#[derive(Clone, Copy, Debug)]
+pub struct Twice<R>(pub R, pub R);
+
+macro_rules! twice {
+    ($name:ident $method:ident) => {
+        impl<R: Real> $name for Twice<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Twice(self.0.$method(other.0), self.1.$method(other.1))
+            }
+        }
+    };
+}
+twice!(Add add);
+twice!(Sub sub);
+twice!(Mul mul);
+twice!(Div div);
+
+impl<R: Real> Neg for Twice<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Twice(-self.0, -self.1)
+    }
+}
+
+impl<R: Real> Twice<R> {
+    const WIDTH: u32 = R::EVERY.count_ones();
+}
+
+impl<R: Real> Real for Twice<R> {
+    const EVERY: u32 = R::EVERY | R::EVERY << Self::WIDTH;
+    #[inline(always)]
+    fn all(self, x: f64) -> Self {
+        Twice(self.0.all(x), self.1.all(x))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Twice(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Twice(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> u32 {
+        self.0.less(other.0) | self.1.less(other.1) << Self::WIDTH
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        self.0.at_most(other.0) | self.1.at_most(other.1) << Self::WIDTH
+    }
+    #[inline(always)]
+    fn third_of_bits(self, more: u64) -> Self {
+        Twice(self.0.third_of_bits(more), self.1.third_of_bits(more))
+    }
+    #[inline(always)]
+    fn ones(self, mask: u32) -> Self {
+        Twice(self.0.ones(mask), self.1.ones(mask >> Self::WIDTH))
+    }
+    #[inline(always)]
+    fn if_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Twice(R::if_less(a.0, b.0, then.0, otherwise.0), R::if_less(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn if_at_most(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Twice(R::if_at_most(a.0, b.0, then.0, otherwise.0), R::if_at_most(a.1, b.1, then.1, otherwise.1))
+    }
+    #[inline(always)]
+    fn two_product<P: Product>(a: Self, b: Self) -> (Self, Self) {
+        let ((p, e), (q, f)) = (R::two_product::<P>(a.0, b.0), R::two_product::<P>(a.1, b.1));
+        (Twice(p, q), Twice(e, f))
+    }
+    #[inline(always)]
+    fn remainder<P: Product>(c: Self, a: Self, b: Self) -> Self {
+        Twice(R::remainder::<P>(c.0, a.0, b.0), R::remainder::<P>(c.1, a.1, b.1))
     }
 }
 
@@ -223,6 +335,14 @@ impl<L: Lanes> Vector<Four<L>> {
     pub fn to_array(self) -> [DVec3; 4] {
         let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
         [0, 1, 2, 3].map(|i| DVec3::new(x[i], y[i], z[i]))
+    }
+}
+
+impl<R> Vector<Twice<R>> {
+    /// The vectors of both.
+    #[inline(always)]
+    pub fn both(a: Vector<R>, b: Vector<R>) -> Self {
+        Vector { x: Twice(a.x, b.x), y: Twice(a.y, b.y), z: Twice(a.z, b.z) }
     }
 }
 

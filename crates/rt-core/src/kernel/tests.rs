@@ -99,6 +99,73 @@ fn lanes_agree() {
     }
 }
 
+/// The lanes of each mask come first, in their order.
+struct Packed([f64; 4]);
+
+impl Vectorized for Packed {
+    type Output = ();
+    fn run<L: Lanes>(self, lanes: L) {
+        for mask in 0..16_u32 {
+            let chosen: Vec<f64> =
+                (0..4).filter(|lane| mask >> lane & 1 == 1).map(|lane| self.0[lane]).collect();
+            let packed = lanes.store4(lanes.pack4(lanes.load4(self.0), mask));
+            assert_eq!(packed[..chosen.len()], chosen, "{mask}");
+        }
+    }
+}
+
+#[test]
+fn packed_lanes() {
+    let numbers = [1.0, -2.5, f64::INFINITY, 1e-310];
+    vectorize(Packed(numbers));
+    Packed(numbers).run(PortableLanes);
+}
+
+/// What arithmetic over [`Real`] gives of four pairs of numbers, with comparisons in bits.
+#[inline(always)]
+fn of_all_operations<R: Real>(a: R, b: R) -> ([R; 12], [u32; 2]) {
+    let (p, e) = R::two_product::<Dekker>(a, b);
+    let numbers = [
+        a + b,
+        a - b,
+        a * b,
+        a / b,
+        -a,
+        a.abs().sqrt(),
+        p,
+        e,
+        R::remainder::<Dekker>(p, a, b),
+        R::if_less(a, b, a, b),
+        R::if_at_most(b, a, a.all(3.0), b),
+        a.abs().third_of_bits(5),
+    ];
+    (numbers, [a.less(b), a.at_most(b)])
+}
+
+/// Eight numbers as twice four are what each is by itself.
+#[test]
+fn twice_as_many_are_each() {
+    let mut random = Random::new(2);
+    for _ in 0..100 {
+        let a: [f64; 8] = core::array::from_fn(|_| random.magnitude(-8.0, 8.0) * random.sign());
+        let mut b: [f64; 8] = core::array::from_fn(|_| random.magnitude(-8.0, 8.0) * random.sign());
+        b[3] = a[3];
+        let lanes = PortableLanes;
+        let four = |n: &[f64]| Four::new(lanes, [n[0], n[1], n[2], n[3]]);
+        let (eight, masks) =
+            of_all_operations(Twice(four(&a[..4]), four(&a[4..])), Twice(four(&b[..4]), four(&b[4..])));
+        for i in 0..8 {
+            let (one, one_masks) = of_all_operations(a[i], b[i]);
+            for (Twice(low, high), one) in eight.into_iter().zip(one) {
+                let number = if i < 4 { low.to_array()[i] } else { high.to_array()[i - 4] };
+                assert_eq!(bits(number), bits(one));
+            }
+            assert_eq!(masks.map(|mask| mask >> i & 1), one_masks);
+        }
+        assert_eq!(<Twice<Four<PortableLanes>>>::EVERY, 255);
+    }
+}
+
 /// Each lane of a pair is what a number by itself gives, to the bit; comparisons with NaN are false.
 #[test]
 fn pairs_are_two_numbers() {

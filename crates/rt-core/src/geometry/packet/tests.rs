@@ -104,7 +104,7 @@ fn forward<'a>(geometry: &Geometry, rays: &'a [crate::Ray], active: u32) -> Pack
     let queries = core::array::from_fn(|i| {
         Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
     });
-    Packet { rays, side, queries, active, rings: Rings::NONE }
+    Packet { rays, side, queries, active, rings: super::Rings::NONE }
 }
 
 /// Rays that go side by side are answered together, and as one by one.

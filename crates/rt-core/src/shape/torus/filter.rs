@@ -238,7 +238,7 @@ impl<R: Real> RoughLine<R> {
     /// S^2, by 8 u of itself, `z^2` by 32 u S^2; and half its derivative by 20 u S, which counts along 2 S.
     #[inline(always)]
     pub fn passes_the_tube(&self, ring: &Ring<R>, from: R, to: R) -> u32 {
-        let ((first, growth), (last, last_growth)) = (self.from_axis(from), self.from_axis(to));
+        let ((first, growth), (last, last_growth)) = (self.axis_distance(from), self.axis_distance(to));
         let most = later(first, last);
         let (zero, slack) = (from.all(0.0), from.all(128.0 * U) * ring.reach * ring.reach);
         let rim = ring.rim + slack;
@@ -249,7 +249,7 @@ impl<R: Real> RoughLine<R> {
 
     /// The square of the distance from the axis, and half its derivative.
     #[inline(always)]
-    fn from_axis(&self, x: R) -> (R, R) {
+    fn axis_distance(&self, x: R) -> (R, R) {
         let z = self.z + x * self.slope;
         (self.square + x * x - z * z, x - z * self.slope)
     }

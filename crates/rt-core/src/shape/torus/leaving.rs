@@ -16,10 +16,10 @@ use super::exact::{Crossings, uncertainty};
 use super::line::Line;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
-use crate::kernel::{Product, Task};
-use crate::math::{exp2i, sqrt};
-use crate::scaled::ScaledRay;
-use crate::{Departure, Hit, Interval, Side};
+use crate::kernel::{Four, Lanes, Product, Real, Task, Vector};
+use crate::math::exp2i;
+use crate::scaled::{ScaledFour, ScaledRay};
+use crate::{Departure, Hit, Interval, Ray, Side};
 
 /// Whether `f64` is certain that a ray which starts outside never comes back to the torus: most do not.
 ///
@@ -38,35 +38,102 @@ use crate::{Departure, Hit, Interval, Side};
 /// the square of this once more. `MARGIN` is a thousand times as much.
 #[inline]
 pub(super) fn never_returns(torus: &Torus, ray: &ScaledRay, from: &Departure) -> bool {
-    const MARGIN: f64 = exp2i(-30);
     // On a spindle the normal may belong to the inner sheet.
     if from.side != Side::Outside || torus.minor >= torus.major {
         return false;
     }
-    let unit = ray.direction * (1.0 / sqrt(ray.direction.dot(ray.direction)));
-    let away = from.normal.dot(unit);
-    if !(away > MARGIN) {
-        return false;
+    let start = from.local * exp2i(-torus.scale);
+    let (major, minor) = (torus.major_scaled, torus.minor_scaled);
+    let axis = torus.axis.into();
+    Fate::new(major, minor, axis, ray.direction.into(), start.into(), from.normal.into()).never != 0
+}
+
+/// See [`never_returns`]. Any number well above the error makes it certain.
+const MARGIN: f64 = exp2i(-30);
+
+/// What `f64` can say of rays that leave rings outward.
+struct Fate<R> {
+    /// In which lanes they certainly never come back, and in which they are certainly back after this distance.
+    never: u32,
+    back: u32,
+    after: R,
+}
+
+impl<R: Real> Fate<R> {
+    #[inline(always)]
+    fn new(
+        major: R,
+        minor: R,
+        axis: Vector<R>,
+        direction: Vector<R>,
+        start: Vector<R>,
+        normal: Vector<R>,
+    ) -> Self {
+        let (zero, one, two, three, four) =
+            (major.all(0.0), major.all(1.0), major.all(2.0), major.all(3.0), major.all(4.0));
+        let margin = major.all(MARGIN);
+        let unit = direction * (one / direction.dot(direction).sqrt());
+        let away = normal.dot(unit);
+        let leaves = margin.less(away);
+        let (height, slope) = (start.dot(axis), unit.dot(axis));
+        let across = start - axis * height;
+        let rho = across.dot(across).sqrt();
+        let along = start.dot(unit);
+        let b = major * (rho - major * (one - slope * slope));
+        let first = b + along * along;
+        let never = leaves & (margin.less(b) | (margin.less(along) & margin.less(first)));
+        if never == R::EVERY {
+            return Fate { never, back: 0, after: zero };
+        }
+        // h' = 3 y^2 + 8 a y + 4 (b + a^2) vanishes last at 2 / 3 (sqrt(4 a^2 - 3 (b + a^2)) - 2 a).
+        let discriminant = four * along * along - three * first;
+        let root = R::if_less(zero, discriminant, discriminant, zero).sqrt();
+        let y = major.all(2.0 / 3.0) * (root - two * along);
+        let constant = major.all(8.0) * major * rho * minor * away;
+        let least = ((y + four * along) * y + four * first) * y + constant;
+        let clear = leaves & margin.less(constant);
+        let never = never | (clear & (y.less(zero) | margin.less(least)));
+        // h is positive at the start and negative there.
+        let back = clear & zero.less(y) & least.less(-margin);
+        Fate { never, back, after: y }
     }
-    let (major, start) = (torus.major_scaled, from.local * exp2i(-torus.scale));
-    let (height, slope) = (start.dot(torus.axis), unit.dot(torus.axis));
-    let across = start - torus.axis * height;
-    let rho = sqrt(across.dot(across));
-    let along = start.dot(unit);
-    let b = major * (rho - major * (1.0 - slope * slope));
-    if b > MARGIN {
-        return true;
+}
+
+/// Whether rays that leave tori are blocked by them within their intervals, one bit each, and which of them it takes
+/// [`hit_leaving`](crate::Primitive::hit_leaving) to tell.
+///
+/// A ray that is back after a distance `y` has crossed before, and not sooner than the slope, less than 2^10, takes `h`
+/// from its first value to zero, 2^-40. The parameter of the first crossing, which rounding changes by far less than half of
+/// it, is then inside an interval from zero to twice that of `y`.
+#[inline(always)]
+pub(crate) fn return_each<L: Lanes>(
+    lanes: L,
+    tori: [&Torus; 4],
+    rays: [&Ray; 4],
+    within: [Interval; 4],
+    from: [&Departure; 4],
+) -> (u32, u32) {
+    let [a, b, c, d] = tori;
+    let center = Vector::new(lanes, [&a.center, &b.center, &c.center, &d.center]);
+    let per_unit = Four::new(lanes, [exp2i(-a.scale), exp2i(-b.scale), exp2i(-c.scale), exp2i(-d.scale)]);
+    let ScaledFour { direction, power, sound, .. } = ScaledFour::about(lanes, rays, center, per_unit);
+    let major = Four::new(lanes, [a.major_scaled, b.major_scaled, c.major_scaled, d.major_scaled]);
+    let minor = Four::new(lanes, [a.minor_scaled, b.minor_scaled, c.minor_scaled, d.minor_scaled]);
+    let axis = Vector::new(lanes, [&a.axis, &b.axis, &c.axis, &d.axis]);
+    let start = Vector::new(lanes, [&from[0].local, &from[1].local, &from[2].local, &from[3].local]);
+    let normal = Vector::new(lanes, [&from[0].normal, &from[1].normal, &from[2].normal, &from[3].normal]);
+    let fate = Fate::new(major, minor, axis, direction, start * per_unit, normal);
+    let mut outward = 0;
+    for (lane, from) in from.into_iter().enumerate() {
+        outward |= u32::from(from.side == Side::Outside) << lane;
     }
-    let first = b + along * along;
-    if along > MARGIN && first > MARGIN {
-        return true;
-    }
-    // h' = 3 y^2 + 8 a y + 4 (b + a^2) vanishes last at 2 / 3 (sqrt(4 a^2 - 3 (b + a^2)) - 2 a).
-    let discriminant = 4.0 * along * along - 3.0 * first;
-    let y = (2.0 / 3.0) * (sqrt(discriminant.max(0.0)) - 2.0 * along);
-    let constant = 8.0 * major * rho * torus.minor_scaled * away;
-    let least = ((y + 4.0 * along) * y + 4.0 * first) * y + constant;
-    constant > MARGIN && (y < 0.0 || least > MARGIN)
+    let rings = sound & outward & minor.less(major);
+    let min = Four::new(lanes, [within[0].min, within[1].min, within[2].min, within[3].min]);
+    let max = Four::new(lanes, [within[0].max, within[1].max, within[2].max, within[3].max]);
+    let (zero, two) = (major.all(0.0), major.all(2.0));
+    let t = fate.after / direction.length() * power;
+    let back = rings & fate.back & min.at_most(zero) & (two * t).less(max);
+    (back, 15 & !back & !(rings & fate.never))
 }
 
 /// The crossings of a ray that leaves this torus, the start not counted, each through `each` until that says stop.
@@ -313,8 +380,10 @@ fn refine<P: Product>(cubic: &Cubic, low: &Node, high: &Node) -> Double {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Primitive;
     use crate::kernel::run;
     use crate::testing::Random;
+    use alloc::vec::Vec;
 
     struct Value<'a>(&'a Cubic, f64);
 
@@ -377,5 +446,73 @@ mod tests {
             }
         }
         assert!(count > 1000, "{count}");
+    }
+
+    struct Returns<'a>(&'a [(Torus, Ray, Interval, Departure)]);
+
+    impl crate::kernel::Vectorized for Returns<'_> {
+        type Output = (Vec<bool>, usize);
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            let (mut answers, mut doubts) = (Vec::new(), 0);
+            for four in self.0.chunks_exact(4) {
+                let [a, b, c, d] = four else { continue };
+                let (back, doubt) = return_each(
+                    lanes,
+                    [&a.0, &b.0, &c.0, &d.0],
+                    [&a.1, &b.1, &c.1, &d.1],
+                    [a.2, b.2, c.2, d.2],
+                    [&a.3, &b.3, &c.3, &d.3],
+                );
+                for (lane, (torus, ray, within, from)) in four.iter().enumerate() {
+                    doubts += (doubt >> lane & 1) as usize;
+                    answers.push(if doubt >> lane & 1 == 1 {
+                        torus.hit_leaving(ray, *within, from).is_some()
+                    } else {
+                        back >> lane & 1 == 1
+                    });
+                }
+            }
+            (answers, doubts)
+        }
+    }
+
+    /// Whether four rays are back is what each finds by itself, in all lanes; few take more than the lanes can tell.
+    #[test]
+    fn rays_return_as_each_does() {
+        let mut random = crate::testing::Random::new(3);
+        let mut rays = Vec::new();
+        while rays.len() < 20_000 {
+            let size = if random.once_in(5) { random.magnitude(-140.0, 140.0) } else { 1.0 };
+            let minor = if random.once_in(8) { random.uniform(0.9, 3.0) } else { random.uniform(0.05, 0.9) };
+            let torus = Torus::new(random.in_cube() * size, random.direction(), size, size * minor).unwrap();
+            let target = torus.center() + random.in_cube() * size;
+            let along = random.direction();
+            let ray = Ray::new(target - along * (4.0 * size), along);
+            let Some(hit) = torus.hit(&ray, Interval::FORWARD) else { continue };
+            let surface = torus.surface(&ray, hit);
+            let side = if random.once_in(6) { Side::Inside } else { Side::Outside };
+            let from = surface.departure(0, hit, side);
+            // Some along the surface.
+            let onward = if random.once_in(3) {
+                let flat = surface.normal.cross(random.direction()).normalize();
+                flat + surface.normal * (random.magnitude(-12.0, 0.0) * random.sign())
+            } else {
+                surface.normal * side.sign() + random.direction()
+            };
+            let (onward, mut within) = from.ray(onward * random.magnitude(-2.0, 2.0));
+            if random.once_in(2) {
+                within.max = random.uniform(0.0, 6.0) * size / onward.direction.length();
+            }
+            rays.push((torus, onward, within, from));
+        }
+        let (wide, doubts) = crate::kernel::vectorize(Returns(&rays));
+        let (portable, _) = crate::kernel::Vectorized::run(Returns(&rays), crate::kernel::PortableLanes);
+        let mut back = 0;
+        for (i, (torus, ray, within, from)) in rays.iter().enumerate() {
+            let expected = torus.hit_leaving(ray, *within, from).is_some();
+            assert!(wide[i] == expected && portable[i] == expected, "{torus:?} {ray:?} {within:?} {from:?}");
+            back += usize::from(expected);
+        }
+        assert!(back > 2000 && doubts < rays.len() / 2, "{back} {doubts}");
     }
 }

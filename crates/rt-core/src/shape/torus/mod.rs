@@ -4,7 +4,7 @@ mod exact;
 mod extrema;
 mod filter;
 mod frame;
-mod leaving;
+pub(crate) mod leaving;
 mod line;
 mod record;
 pub(crate) mod together;

@@ -517,6 +517,50 @@ mod tests {
         assert!(found > 0.93 * all && all > 4000.0, "{count:?}");
     }
 
+    struct Together<'a>(&'a [(Torus, Ray, Hit)]);
+
+    impl crate::kernel::Vectorized for Together<'_> {
+        type Output = alloc::vec::Vec<Surface>;
+        fn run<L: Lanes>(self, lanes: L) -> Self::Output {
+            let nowhere = Surface::new(0.0, DVec3::ZERO, DVec3::ZERO, DVec3::Y, 0.0);
+            let mut surfaces = alloc::vec![nowhere; self.0.len()];
+            for (four, surfaces) in self.0.chunks_exact(4).zip(surfaces.chunks_exact_mut(4)) {
+                let ([a, b, c, d], [sa, sb, sc, sd]) = (four, surfaces) else { continue };
+                let (tori, rays) = ([&a.0, &b.0, &c.0, &d.0], [&a.1, &b.1, &c.1, &d.1]);
+                Torus::surface_each(lanes, tori, rays, [a.2, b.2, c.2, d.2], [sa, sb, sc, sd]);
+            }
+            surfaces
+        }
+    }
+
+    /// Records of four hits are those one by one, all bits, in all lanes, also where some are in doubt.
+    #[test]
+    fn four_are_each() {
+        use crate::testing::Random;
+        use crate::{Interval, kernel};
+        let mut random = Random::new(7);
+        let mut hits = alloc::vec::Vec::new();
+        while hits.len() < 8000 {
+            let size = if random.once_in(6) { random.magnitude(-140.0, 140.0) } else { 1.0 };
+            let minor =
+                if random.once_in(4) { random.magnitude(-5.0, 0.5) } else { random.uniform(0.1, 0.9) };
+            let torus = Torus::new(random.in_cube() * size, random.direction(), size, minor * size).unwrap();
+            let target = torus.center + random.in_cube() * size;
+            let along = random.direction() * random.magnitude(-3.0, 3.0);
+            let ray = Ray::new(target - along.normalize() * (random.magnitude(-1.0, 5.0) * size), along);
+            torus.crossings(&ray, Interval::LINE, &mut |hit| hits.push((torus, ray, hit)));
+        }
+        hits.truncate(8000);
+        let wide = kernel::vectorize(Together(&hits));
+        let portable = kernel::Vectorized::run(Together(&hits), kernel::PortableLanes);
+        for (i, (torus, ray, hit)) in hits.iter().enumerate() {
+            let bits = |s: &Surface| alloc::format!("{s:?}");
+            let expected = bits(&torus.surface(ray, *hit));
+            assert_eq!(bits(&wide[i]), expected, "{torus:?} {ray:?} {hit:?}");
+            assert_eq!(bits(&portable[i]), expected, "{torus:?} {ray:?} {hit:?}");
+        }
+    }
+
     /// Of the crossings in the same sense the nearest, not too far; of equally near ones that of the index.
     #[test]
     fn which_crossing_a_hit_names() {
