@@ -246,7 +246,7 @@ fn slabs_are_three_pairs_of_planes() {
             all.into_iter().zip(pairs).map(|(t, pair)| pair * usize::from(is(t))).sum::<usize>()
         };
         let entered = which(&|[near, _]| near > 0.0 && steps(entry) - steps(near) < 16);
-        let left = which(&|[_, far]| steps(far) - steps(leave) < 16);
+        let left = which(&|[_, far]| leave > 0.0 && steps(far) - steps(leave) < 16);
         let (entered, left) = (entered * usize::from(entry > 0.0), left * usize::from(leave > 0.0));
         let right = (subnormal, back, [bits(entry + 0.0), bits(leave + 0.0)], entered, left);
         let check = |told: (bool, usize, [u64; 2], usize, usize)| {
