@@ -427,8 +427,11 @@ mod tests {
     /// Tori of all kinds and rays that cross or graze them, from near and far, at all scales, and all kinds of intervals.
     fn pairs(random: &mut Random) -> Vec<(Torus, Ray, Interval)> {
         let make = |case: usize| {
-            let size =
-                if case % 5 == 0 { random.magnitude(-140.0, 140.0) } else { random.magnitude(-1.0, 1.0) };
+            let size = if case.is_multiple_of(5) {
+                random.magnitude(-140.0, 140.0)
+            } else {
+                random.magnitude(-1.0, 1.0)
+            };
             let minor = match case % 7 {
                 0 => random.magnitude(-4.0, -1.0),
                 1 => random.uniform(0.95, 3.0),
@@ -448,7 +451,7 @@ mod tests {
                     (out + normal * (minor * (1.0 + random.sign() * random.magnitude(-16.0, -1.0))), along)
                 }
             };
-            let distance = random.magnitude(-2.0, if case % 11 == 0 { 14.0 } else { 2.0 });
+            let distance = random.magnitude(-2.0, if case.is_multiple_of(11) { 14.0 } else { 2.0 });
             let along = along * random.magnitude(-3.0, 3.0);
             let origin = center + (target - along.normalize() * distance) * size;
             let ray = match case % 97 {
