@@ -10,6 +10,7 @@ use super::rings::{Rings, Together};
 use super::stream::interleave;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
+use crate::scaled::largest;
 use crate::{Departure, Interval, Ray};
 use alloc::vec::Vec;
 
@@ -262,12 +263,11 @@ fn go_together(rays: &[Ray]) -> bool {
     else {
         return false;
     };
-    let size = |ray: &Ray| ray.direction.abs().max_element();
-    let most = size(first);
+    let most = largest(first.direction);
     // Directions of unlike lengths may be alike.
     let near = |ray: &Ray| {
-        let size = size(ray);
-        (ray.direction * most - first.direction * size).abs().max_element() <= most * size * 0.25
+        let size = largest(ray.direction);
+        largest(ray.direction * most - first.direction * size) <= most * size * 0.25
     };
     near(last) && near(middle)
 }

@@ -177,7 +177,7 @@ impl Frame {
         if !self.inhabited {
             return (None, Window { absolute: 0.0 });
         }
-        let direction_exponent = exponent(ray.direction.abs().max_element());
+        let direction_exponent = exponent(largest(ray.direction));
         let power = direction_exponent - self.exponent;
         // Not for directions that are not normal numbers or whose reciprocal is none, nor for parameters that would overflow.
         if !(is_middling(direction_exponent) && is_middling(power)) {
@@ -187,7 +187,7 @@ impl Frame {
         let origin = (ray.origin - self.center) * scale;
         let direction = ray.direction * exp2i(-direction_exponent);
         let factor = exp2i(power);
-        let far = origin.abs().max_element();
+        let far = largest(origin);
         if !(far < FARTHEST) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
@@ -386,10 +386,10 @@ impl Frame {
 }
 
 impl LocalRay {
-    /// Stands for a ray that kernel coordinates cannot hold: it meets every box.
+    /// Stands for a ray that kernel coordinates cannot hold: it meets every box, as all are within 1 of zero.
     pub const EVERYWHERE: LocalRay = LocalRay {
         origin: DVec3::ZERO,
-        error: DVec3::INFINITY,
+        error: DVec3::splat(exp2i(100)),
         direction: DVec3::ONE,
         factor: 1.0,
         shift: f64::INFINITY,

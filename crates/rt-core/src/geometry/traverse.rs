@@ -106,22 +106,22 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
             }
         }
     }
+    let mut child = match next {
+        Some(child) => child,
+        None => match stack.pop() {
+            Some(top) => unpack(top).1,
+            None => return ControlFlow::Continue(()),
+        },
+    };
     loop {
-        let child = match next {
-            Some(next) => next,
-            None => loop {
-                let Some(top) = stack.pop() else {
-                    return ControlFlow::Continue(());
-                };
-                let (at, child) = unpack(top);
-                if at <= limit {
-                    break child;
-                }
-            },
-        };
-        next = match child.as_node() {
+        match child.as_node() {
             Some(index) => {
-                tree.nodes.get(index).and_then(|node| descend(lanes, tree, node, &slab, limit, &mut stack))
+                if let Some(node) = tree.nodes.get(index)
+                    && let Some(next) = descend(lanes, tree, node, &slab, limit, &mut stack)
+                {
+                    child = next;
+                    continue;
+                }
             }
             None => {
                 store.visit(child.run(), ray, query)?;
@@ -129,7 +129,15 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
                     end = query.limit();
                     limit = local.limit(end);
                 }
-                None
+            }
+        }
+        child = loop {
+            let Some(top) = stack.pop() else {
+                return ControlFlow::Continue(());
+            };
+            let (at, child) = unpack(top);
+            if at <= limit {
+                break child;
             }
         };
     }

@@ -80,9 +80,9 @@ impl Lanes for Avx2Lanes {
         unsafe { _mm256_mul_ps(a, b) }
     }
     #[inline(always)]
-    fn mul_sub(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+    fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
         // SAFETY: `self` proves FMA.
-        unsafe { _mm256_fmsub_ps(a, b, c) }
+        unsafe { _mm256_fmadd_ps(a, b, c) }
     }
     #[inline(always)]
     fn max(self, a: __m256, b: __m256) -> __m256 {
@@ -98,6 +98,35 @@ impl Lanes for Avx2Lanes {
     fn le(self, a: __m256, b: __m256) -> u32 {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
+    }
+    #[inline(always)]
+    fn all_le<const N: usize>(self, pairs: [(__m256, __m256); N]) -> u32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let mut all = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
+            for (a, b) in pairs {
+                all = _mm256_and_ps(all, _mm256_cmp_ps::<_CMP_LE_OQ>(a, b));
+            }
+            _mm256_movemask_ps(all) as u32
+        }
+    }
+    #[inline(always)]
+    fn positive_max(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))) }
+    }
+    #[inline(always)]
+    fn positive_min(self, a: __m256, b: __m256) -> __m256 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))) }
+    }
+    #[inline(always)]
+    fn positive_lt(self, a: __m256, b: __m256) -> u32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let less = _mm256_cmpgt_epi32(_mm256_castps_si256(b), _mm256_castps_si256(a));
+            _mm256_movemask_ps(_mm256_castsi256_ps(less)) as u32
+        }
     }
     #[inline(always)]
     fn large(self, numbers: [u32; 8]) -> u32 {

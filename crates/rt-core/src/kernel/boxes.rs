@@ -9,14 +9,19 @@
 //!   1 -+ 2^-22 = 1 -+ 4 v. That outweighs its own rounding, and those of the difference and of the product, 3 v
 //!   together. It works in the wrong direction only where the parameter is negative, hence behind the start: there
 //!   the entry counts as 0 anyway, and an exit keeps its sign.
-//! - With fused multiply-add, the test is `x * r - c` with `c = o * r` moved outward by `e * |r|` and rounded outward:
-//!   exact but for one rounding. Without, it is `(x - o') * r` with `o' = o -+ e` rounded outward. What these sums and
-//!   products lose in f64 is far less than the step outward.
+//! - The origin is moved outward by `e + 4 v (|o| + e)`, to `o'`. Without fused multiply-add the test is `(x - o') * r`
+//!   with `o'` rounded to nearest. With, it is `x * r + c`, where `c = -o' * r` is made of the reciprocal before it was
+//!   rounded, and rounded itself: by both, 2 v `|o' r|` at most, half of the step outward. The sum is rounded once. What
+//!   is lost in `f64` is far less.
 //! - Results below the normal range err by 2^-150 at most, far less than `e * |r| >= 2^-98` moved them.
 //! - An axis with `|d_i| < 2^-100` is treated as `2^-100`. Within the scene a parameter is at most about 2, so this
 //!   moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if `o +- e` lies
 //!   outside, else its exit is at least `2^-98 * 2^100 = 4`, beyond the scene.
-//! - A NaN (infinities cancel) is passed over by `max` and `min`: the box is kept.
+//! - Hence, with fused multiply-add, a positive entry is less than the true one (by v of itself or more), and an exit that
+//!   is truly at least 0 is positive and greater than the true one: where the true ones are in order, these are not equal.
+//! - There is no NaN: origins (at most about 8, see `geometry::frame`), `r` (at most 2^100) and their products are finite,
+//!   and no `r` is 0. Rays that nothing is known of have a large error, not an infinite one. Empty boxes are infinite, and
+//!   so are their entries.
 
 use super::Lanes;
 use glam::DVec3;
@@ -61,26 +66,26 @@ impl Boxes {
     /// One of the six rows.
     #[inline(always)]
     pub fn row(&self, row: Row) -> &[f32; 8] {
-        // SAFETY: a `Row` is below 6 by construction.
-        unsafe { self.rows.get_unchecked(row.0 as usize) }
+        // SAFETY: a `Row` is the place of one of the six rows by construction, and `f32` may lie at any multiple of four.
+        unsafe { &*self.rows.as_ptr().byte_add(row.0) }
     }
 }
 
-/// The index of a row of [`Boxes`].
+/// The place of a row of [`Boxes`], in bytes from the first: nothing is left to compute for each node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row(u8);
+pub struct Row(usize);
 
 impl Row {
     /// The row of least coordinates on this axis, 0 to 2 (taken modulo 3).
     #[inline(always)]
     pub const fn min(axis: usize) -> Row {
-        Row((axis % 3) as u8)
+        Row(axis % 3 * size_of::<[f32; 8]>())
     }
 
     /// The row of greatest coordinates on this axis, 0 to 2 (taken modulo 3).
     #[inline(always)]
     pub const fn max(axis: usize) -> Row {
-        Row((axis % 3) as u8 + 3)
+        Row((axis % 3 + 3) * size_of::<[f32; 8]>())
     }
 }
 
@@ -100,6 +105,9 @@ pub fn round_up(x: f64) -> f32 {
 
 /// What a rounding to `f32` can lose, twice.
 const STEP: f64 = crate::math::exp2i(-23);
+
+/// The same, four times.
+const TWO_STEPS: f64 = crate::math::exp2i(-22);
 
 /// An `f32` that is at least `x` and not much more, without branches; for `x` above the subnormal numbers.
 #[inline(always)]
@@ -121,7 +129,7 @@ pub struct SlabRay<L: Lanes> {
 impl<L: Lanes> SlabRay<L> {
     /// The ray that starts within `error` of `origin`.
     ///
-    /// Without branches: rounded to nearest after a step outward of 2^-23, twice what that can lose.
+    /// Without branches: rounded to nearest after a step outward of 2^-22, twice what that can lose.
     #[inline(always)]
     pub fn new(lanes: L, origin: DVec3, error: DVec3, direction: DVec3) -> Self {
         const LEAST: f64 = crate::math::exp2i(-100);
@@ -131,22 +139,19 @@ impl<L: Lanes> SlabRay<L> {
         // not inlined.
         let axis = |i: usize| {
             let (o, e, d) = (o[i], e[i], direction[i]);
+            // Forward, the origin counts as further on for the entry and as further back for the exit.
+            let outward = (e + (o.abs() + e) * TWO_STEPS).copysign(d);
+            let (first, last) = (-(o + outward), outward - o);
             let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
             let inverse = 1.0 / d;
             let (near, far) = ((inverse * (1.0 - SLACK)) as f32, (inverse * (1.0 + SLACK)) as f32);
-            let step = |x: f64| x.abs() * STEP;
             let (near_offset, far_offset) = if L::FUSED {
-                // An offset is subtracted: a greater one makes the parameter smaller.
-                let (first, last) = (f64::from(near), f64::from(far));
-                (
-                    (o * first + (e * first.abs() + step(o * first))) as f32,
-                    (o * last - (e * last.abs() + step(o * last))) as f32,
-                )
+                // Nothing waits for the division but one product.
+                (first * (1.0 - SLACK) * inverse, last * (1.0 + SLACK) * inverse)
             } else {
-                // Forward, the origin counts as further on for the entry and as further back for the exit.
-                let outward = (e + step(o)).copysign(d);
-                ((o + outward) as f32, (o - outward) as f32)
+                (first, last)
             };
+            let (near_offset, far_offset) = (near_offset as f32, far_offset as f32);
             let row = |least: bool| if least { Row::min(i) } else { Row::max(i) };
             (row(d > 0.0), row(d < 0.0), near, near_offset, far, far_offset)
         };
@@ -164,25 +169,26 @@ impl<L: Lanes> SlabRay<L> {
     /// The boxes that the ray may meet between 0 and `limit`, one bit each, and where it enters them (at least +0).
     #[inline(always)]
     pub fn test(&self, lanes: L, boxes: &Boxes, limit: L::F) -> (u32, L::F) {
-        let mut entry = lanes.splat(0.0);
-        let mut exit = limit;
-        for axis in 0..3 {
+        let slab = |axis: usize| {
             let near = lanes.load(boxes.row(self.near[axis]));
             let far = lanes.load(boxes.row(self.far[axis]));
-            let (near, far) = if L::FUSED {
+            if L::FUSED {
                 (
-                    lanes.mul_sub(near, self.near_factor[axis], self.near_offset[axis]),
-                    lanes.mul_sub(far, self.far_factor[axis], self.far_offset[axis]),
+                    lanes.mul_add(near, self.near_factor[axis], self.near_offset[axis]),
+                    lanes.mul_add(far, self.far_factor[axis], self.far_offset[axis]),
                 )
             } else {
                 (
-                    lanes.mul(lanes.sub(near, self.near_offset[axis]), self.near_factor[axis]),
-                    lanes.mul(lanes.sub(far, self.far_offset[axis]), self.far_factor[axis]),
+                    lanes.mul(lanes.add(near, self.near_offset[axis]), self.near_factor[axis]),
+                    lanes.mul(lanes.add(far, self.far_offset[axis]), self.far_factor[axis]),
                 )
-            };
-            entry = lanes.max(near, entry);
-            exit = lanes.min(far, exit);
-        }
-        (lanes.le(entry, exit), entry)
+            }
+        };
+        let (x, y, z) = (slab(0), slab(1), slab(2));
+        // A negative entry or exit need not be the right one.
+        let entry =
+            lanes.positive_max(lanes.positive_max(x.0, y.0), lanes.positive_max(z.0, lanes.splat(0.0)));
+        let exit = lanes.positive_min(lanes.positive_min(x.1, y.1), lanes.positive_min(z.1, limit));
+        (lanes.positive_lt(entry, exit), entry)
     }
 }

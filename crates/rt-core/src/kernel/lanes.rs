@@ -11,7 +11,7 @@ use crate::math::sqrt;
 pub trait Lanes: Copy {
     /// Eight lanes.
     type F: Copy;
-    /// Whether [`mul_sub`](Lanes::mul_sub) rounds once.
+    /// Whether [`mul_add`](Lanes::mul_add) rounds once.
     const FUSED: bool;
     /// The same value in all lanes.
     fn splat(self, x: f32) -> Self::F;
@@ -25,14 +25,24 @@ pub trait Lanes: Copy {
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a * b`.
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `a * b - c`, rounded once if [`FUSED`](Lanes::FUSED), otherwise twice.
-    fn mul_sub(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `a * b + c`, rounded once if [`FUSED`](Lanes::FUSED), otherwise twice.
+    fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     /// `if a > b { a } else { b }`: `b` when either is NaN.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     /// `if a < b { a } else { b }`: `b` when either is NaN.
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     /// The lanes in which `a <= b`, one bit each, lane 0 the lowest.
     fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// The lanes in which `a <= b` for each of these pairs, one bit each, lane 0 the lowest.
+    fn all_le<const N: usize>(self, pairs: [(Self::F, Self::F); N]) -> u32;
+    /// The greater of both if one is at least +0, otherwise either; for numbers that are not NaN. Compared as integers:
+    /// one cycle, not two or four.
+    fn positive_max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The lesser of both if none is negative (-0 is), otherwise a negative one; for numbers that are not NaN.
+    fn positive_min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The lanes in which `a < b`, and maybe those in which `a = b`, for numbers that are not NaN and `a` that is at least
+    /// +0.
+    fn positive_lt(self, a: Self::F, b: Self::F) -> u32;
     /// The numbers that are at least 2^31, one bit each, the first the lowest.
     fn large(self, numbers: [u32; 8]) -> u32;
     /// `1 / a`, for |a| < 2^-100 that of 2^-100 with its sign.
@@ -149,8 +159,8 @@ impl Lanes for PortableLanes {
         each(a, b, |a, b| a * b)
     }
     #[inline(always)]
-    fn mul_sub(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
-        self.sub(self.mul(a, b), c)
+    fn mul_add(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
+        self.add(self.mul(a, b), c)
     }
     #[inline(always)]
     fn max(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
@@ -163,6 +173,22 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn le(self, a: [f32; 8], b: [f32; 8]) -> u32 {
         (0..8).fold(0, |mask, i| mask | (((a[i] <= b[i]) as u32) << i))
+    }
+    #[inline(always)]
+    fn all_le<const N: usize>(self, pairs: [([f32; 8], [f32; 8]); N]) -> u32 {
+        pairs.iter().fold(255, |mask, (a, b)| mask & self.le(*a, *b))
+    }
+    #[inline(always)]
+    fn positive_max(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        self.max(a, b)
+    }
+    #[inline(always)]
+    fn positive_min(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        self.min(a, b)
+    }
+    #[inline(always)]
+    fn positive_lt(self, a: [f32; 8], b: [f32; 8]) -> u32 {
+        self.le(a, b)
     }
     #[inline(always)]
     fn large(self, numbers: [u32; 8]) -> u32 {

@@ -55,8 +55,8 @@ impl EightRays {
             let inverse = lanes.load(&self.inverse[axis]);
             let a = lanes.mul(lanes.sub(lanes.splat(min[axis] - pad), origin), inverse);
             let b = lanes.mul(lanes.sub(lanes.splat(max[axis] + pad), origin), inverse);
-            entry = lanes.max(lanes.min(a, b), entry);
-            exit = lanes.min(lanes.max(a, b), exit);
+            entry = lanes.positive_max(lanes.min(a, b), entry);
+            exit = lanes.positive_min(lanes.max(a, b), exit);
         }
         let entry = lanes.mul(entry, lanes.splat(1.0 - SLACK));
         let exit = lanes.min(lanes.mul(exit, lanes.splat(1.0 + SLACK)), lanes.load(limit));
@@ -81,7 +81,7 @@ impl EightRays {
         limit: &[f32; 8],
     ) -> u32 {
         const SLACK: f32 = 1.0 / 1_048_576.0;
-        let edge: [f32; 3] = core::array::from_fn(|k| max[k] - min[k]);
+        let edge = [max[0] - min[0], max[1] - min[1], max[2] - min[2]];
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let radius = larger(larger(edge[0], edge[1]), edge[2]) * 0.5 + pad;
         let (mut w, mut along) = ([lanes.splat(0.0); 3], lanes.splat(0.0));
@@ -97,10 +97,11 @@ impl EightRays {
             square = lanes.add(square, lanes.mul(l, l));
         }
         let reach = lanes.splat(radius + pad);
-        let near = lanes.le(square, lanes.splat(radius * radius * (1.0 + SLACK)));
-        let before_end = lanes.le(lanes.sub(t, reach), lanes.load(limit));
-        let after_start = lanes.le(lanes.splat(0.0), lanes.add(t, reach));
-        near & before_end & after_start
+        lanes.all_le([
+            (square, lanes.splat(radius * radius * (1.0 + SLACK))),
+            (lanes.sub(t, reach), lanes.load(limit)),
+            (lanes.splat(0.0), lanes.add(t, reach)),
+        ])
     }
 }
 
@@ -115,8 +116,8 @@ pub struct Beam<L: Lanes> {
     near: Row,
     far: Row,
     sign: L::F,
-    near_plane: L::F,
-    far_plane: L::F,
+    near_offset: L::F,
+    far_offset: L::F,
     sides: [BeamSide<L>; 2],
 }
 
@@ -130,6 +131,19 @@ struct BeamSide<L: Lanes> {
     high: L::F,
     high_slope: L::F,
     high_at_near: bool,
+}
+
+impl<L: Lanes> BeamSide<L> {
+    /// Least and greatest position between these depths.
+    #[inline(always)]
+    fn ends(&self, lanes: L, near: L::F, far: L::F) -> (L::F, L::F) {
+        let low_depth = if self.low_at_near { near } else { far };
+        let high_depth = if self.high_at_near { near } else { far };
+        (
+            lanes.mul_add(self.low_slope, low_depth, self.low),
+            lanes.mul_add(self.high_slope, high_depth, self.high),
+        )
+    }
 }
 
 /// The numbers of a [`Beam`], as `f64`.
@@ -183,8 +197,8 @@ impl<L: Lanes> Beam<L> {
             near: if forward { Row::min(shape.axis) } else { Row::max(shape.axis) },
             far: if forward { Row::max(shape.axis) } else { Row::min(shape.axis) },
             sign: lanes.splat(shape.sign as f32),
-            near_plane: lanes.splat((plane + pad) as f32),
-            far_plane: lanes.splat((plane - pad) as f32),
+            near_offset: lanes.splat((-plane - pad) as f32),
+            far_offset: lanes.splat((pad - plane) as f32),
             sides: [side(0), side(1)],
         }
     }
@@ -193,19 +207,19 @@ impl<L: Lanes> Beam<L> {
     /// least +0).
     #[inline(always)]
     pub fn test(&self, lanes: L, boxes: &Boxes, limit: L::F) -> (u32, L::F) {
-        let near = lanes.mul_sub(lanes.load(boxes.row(self.near)), self.sign, self.near_plane);
-        let far = lanes.mul_sub(lanes.load(boxes.row(self.far)), self.sign, self.far_plane);
-        let near = lanes.max(near, lanes.splat(0.0));
-        let far = lanes.min(far, limit);
-        let mut mask = lanes.le(near, far);
-        for side in &self.sides {
-            let low_depth = if side.low_at_near { near } else { far };
-            let high_depth = if side.high_at_near { near } else { far };
-            let low = lanes.add(lanes.mul(side.low_slope, low_depth), side.low);
-            let high = lanes.add(lanes.mul(side.high_slope, high_depth), side.high);
-            mask &= lanes.le(low, lanes.load(boxes.row(side.max)));
-            mask &= lanes.le(lanes.load(boxes.row(side.min)), high);
-        }
+        let near = lanes.mul_add(lanes.load(boxes.row(self.near)), self.sign, self.near_offset);
+        let far = lanes.mul_add(lanes.load(boxes.row(self.far)), self.sign, self.far_offset);
+        let near = lanes.positive_max(near, lanes.splat(0.0));
+        let far = lanes.positive_min(far, limit);
+        let [a, b] = &self.sides;
+        let ((a_low, a_high), (b_low, b_high)) = (a.ends(lanes, near, far), b.ends(lanes, near, far));
+        let mask = lanes.all_le([
+            (near, far),
+            (a_low, lanes.load(boxes.row(a.max))),
+            (lanes.load(boxes.row(a.min)), a_high),
+            (b_low, lanes.load(boxes.row(b.max))),
+            (lanes.load(boxes.row(b.min)), b_high),
+        ]);
         (mask, near)
     }
 }

@@ -37,10 +37,24 @@ impl Vectorized for Everything {
                 exact.extend(lanes.store(x).map(|x| bits(x.into())));
             }
             exact.push(u64::from(lanes.le(a, b)));
+            exact.push(u64::from(lanes.all_le([(a, b), (c, b), (a, a)])));
+            // Where neither has a sign these are the greater and the lesser; of two with signs, either.
+            let (p, q) = (lanes.store(a), lanes.store(b));
+            let (most, least) =
+                (lanes.store(lanes.positive_max(a, b)), lanes.store(lanes.positive_min(a, b)));
+            let size = lanes.max(a, lanes.splat(0.0));
+            let (less, size) = (lanes.positive_lt(size, b), lanes.store(size));
+            for i in 0..8 {
+                let (p, q) = (p[i], q[i]);
+                let negative = p.is_sign_negative() && q.is_sign_negative();
+                let right = |found: f32, wanted: f32| found == wanted || negative && [p, q].contains(&found);
+                assert!(right(most[i], p.max(q)) && right(least[i], p.min(q)), "{p} {q}");
+                assert!(less >> i & 1 == u32::from(size[i] < q) || size[i] == q, "{p} {q}");
+            }
             let words = core::array::from_fn(|i| (numbers[i].to_bits() >> 32) as u32);
             exact.push(u64::from(lanes.large(words)));
             nearly
-                .extend(lanes.store(lanes.mul_sub(a, b, c)).into_iter().chain(lanes.store(lanes.inverse(a))));
+                .extend(lanes.store(lanes.mul_add(a, b, c)).into_iter().chain(lanes.store(lanes.inverse(a))));
             let four = |first: usize| core::array::from_fn(|i| numbers[(first + i) % 12]);
             let (a, b, c) = (lanes.load4(four(0)), lanes.load4(four(6)), lanes.splat4(numbers[3]));
             for x in [
