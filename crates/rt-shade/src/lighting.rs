@@ -191,7 +191,7 @@ impl LightMany<'_, '_> {
             let cosine = cosine.to_array();
             let (mut blocked, mut free) = (0, 0);
             let ways = match cube {
-                Some(cube) if tracer.shadows => {
+                Some(cube) if tracer.shadows && queues.is_none() => {
                     let mut ways = Geometry::four_towards(cube, start);
                     let left = [0, 1, 2, 3].map(|i| four[i].found.object);
                     blocked = scene.geometry.blocked_by_tori(cube, &mut ways, lit, left, &scene.screens);
