@@ -43,8 +43,11 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
         let next = match self.child.as_node() {
             Some(index) => {
                 let tree = &geometry.tree;
-                let node = tree.nodes.get(index);
-                node.and_then(|node| descend(lanes, tree, node, &self.slab, self.limit, &mut stack))
+                // Not by `and_then`: a closure that is not inlined is compiled without the instruction set.
+                match tree.nodes.get(index) {
+                    Some(node) => descend(lanes, tree, node, &self.slab, self.limit, &mut stack),
+                    None => None,
+                }
             }
             None => {
                 if geometry.store.visit(self.child.run(), self.ray, &mut self.query).is_break() {

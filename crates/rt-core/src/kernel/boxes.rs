@@ -126,36 +126,38 @@ pub struct SlabRay<L: Lanes> {
     far_offset: [L::F; 3],
 }
 
+/// What a [`SlabRay`] knows of an axis: its rows of least and greatest coordinates on the way, and factor and offset for each.
+#[inline(always)]
+fn axis<L: Lanes>(i: usize, o: f64, e: f64, d: f64) -> (Row, Row, f32, f32, f32, f32) {
+    const LEAST: f64 = crate::math::exp2i(-100);
+    const SLACK: f64 = crate::math::exp2i(-22);
+    // Forward, the origin counts as further on for the entry and as further back for the exit.
+    let outward = (e + (o.abs() + e) * TWO_STEPS).copysign(d);
+    let (first, last) = (-(o + outward), outward - o);
+    let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
+    let inverse = 1.0 / d;
+    let (near, far) = ((inverse * (1.0 - SLACK)) as f32, (inverse * (1.0 + SLACK)) as f32);
+    let (near_offset, far_offset) = if L::FUSED {
+        // Nothing waits for the division but one product.
+        (first * (1.0 - SLACK) * inverse, last * (1.0 + SLACK) * inverse)
+    } else {
+        (first, last)
+    };
+    let (near_row, far_row) = if d > 0.0 { (Row::min(i), Row::max(i)) } else { (Row::max(i), Row::min(i)) };
+    (near_row, far_row, near, near_offset as f32, far, far_offset as f32)
+}
+
 impl<L: Lanes> SlabRay<L> {
     /// The ray that starts within `error` of `origin`.
     ///
     /// Without branches: rounded to nearest after a step outward of 2^-22, twice what that can lose.
     #[inline(always)]
     pub fn new(lanes: L, origin: DVec3, error: DVec3, direction: DVec3) -> Self {
-        const LEAST: f64 = crate::math::exp2i(-100);
-        const SLACK: f64 = crate::math::exp2i(-22);
-        let (o, e) = (origin.to_array(), error.to_array());
-        // No closure makes a register: functions that take closures are compiled without the instruction set where they are
-        // not inlined.
-        let axis = |i: usize| {
-            let (o, e, d) = (o[i], e[i], direction[i]);
-            // Forward, the origin counts as further on for the entry and as further back for the exit.
-            let outward = (e + (o.abs() + e) * TWO_STEPS).copysign(d);
-            let (first, last) = (-(o + outward), outward - o);
-            let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
-            let inverse = 1.0 / d;
-            let (near, far) = ((inverse * (1.0 - SLACK)) as f32, (inverse * (1.0 + SLACK)) as f32);
-            let (near_offset, far_offset) = if L::FUSED {
-                // Nothing waits for the division but one product.
-                (first * (1.0 - SLACK) * inverse, last * (1.0 + SLACK) * inverse)
-            } else {
-                (first, last)
-            };
-            let (near_offset, far_offset) = (near_offset as f32, far_offset as f32);
-            let row = |least: bool| if least { Row::min(i) } else { Row::max(i) };
-            (row(d > 0.0), row(d < 0.0), near, near_offset, far, far_offset)
-        };
-        let (x, y, z) = (axis(0), axis(1), axis(2));
+        let (o, e) = (origin, error);
+        // No closure makes a register, or anything: one that is not inlined is compiled without the instruction set.
+        let x = axis::<L>(0, o.x, e.x, direction.x);
+        let y = axis::<L>(1, o.y, e.y, direction.y);
+        let z = axis::<L>(2, o.z, e.z, direction.z);
         SlabRay {
             near: [x.0, y.0, z.0],
             far: [x.1, y.1, z.1],
@@ -166,25 +168,30 @@ impl<L: Lanes> SlabRay<L> {
         }
     }
 
+    /// Where the ray enters and leaves the slabs of the boxes on an axis. Not a closure: see [`new`](SlabRay::new).
+    #[inline(always)]
+    fn slab(&self, lanes: L, boxes: &Boxes, axis: usize) -> (L::F, L::F) {
+        let near = lanes.load(boxes.row(self.near[axis]));
+        let far = lanes.load(boxes.row(self.far[axis]));
+        if L::FUSED {
+            (
+                lanes.mul_add(near, self.near_factor[axis], self.near_offset[axis]),
+                lanes.mul_add(far, self.far_factor[axis], self.far_offset[axis]),
+            )
+        } else {
+            (
+                lanes.mul(lanes.add(near, self.near_offset[axis]), self.near_factor[axis]),
+                lanes.mul(lanes.add(far, self.far_offset[axis]), self.far_factor[axis]),
+            )
+        }
+    }
+
     /// The boxes that the ray may meet between 0 and `limit`, one bit each, and where it enters them (at least +0).
     #[inline(always)]
     pub fn test(&self, lanes: L, boxes: &Boxes, limit: L::F) -> (u32, L::F) {
-        let slab = |axis: usize| {
-            let near = lanes.load(boxes.row(self.near[axis]));
-            let far = lanes.load(boxes.row(self.far[axis]));
-            if L::FUSED {
-                (
-                    lanes.mul_add(near, self.near_factor[axis], self.near_offset[axis]),
-                    lanes.mul_add(far, self.far_factor[axis], self.far_offset[axis]),
-                )
-            } else {
-                (
-                    lanes.mul(lanes.add(near, self.near_offset[axis]), self.near_factor[axis]),
-                    lanes.mul(lanes.add(far, self.far_offset[axis]), self.far_factor[axis]),
-                )
-            }
-        };
-        let (x, y, z) = (slab(0), slab(1), slab(2));
+        let x = self.slab(lanes, boxes, 0);
+        let y = self.slab(lanes, boxes, 1);
+        let z = self.slab(lanes, boxes, 2);
         // A negative entry or exit need not be the right one.
         let entry =
             lanes.positive_max(lanes.positive_max(x.0, y.0), lanes.positive_max(z.0, lanes.splat(0.0)));
