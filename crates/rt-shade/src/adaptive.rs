@@ -32,7 +32,7 @@ const COARSE: u32 = 2;
 /// A straight line crosses 7 of them at most; 6 leaves out the fewest of the edges and most of the patterns.
 const EDGE_CELLS: u32 = 6;
 
-/// Rays that are cast in one piece.
+/// Rays that are cast in one piece. Only time and memory depend on it.
 const BATCH: usize = 1024;
 
 /// The tile's edge: a large one shares more corners, but the finest raster must stay small (a few MB).

@@ -61,7 +61,8 @@ impl Rays {
 /// The rays that go on from the surfaces that some rays have hit.
 #[derive(Debug, Default)]
 pub(crate) struct Onward {
-    reflected: Rays,
+    /// Those that are reflected and, when they are [merged](Onward::merge), all.
+    pub rays: Rays,
     refracted: Rays,
 }
 
@@ -83,14 +84,13 @@ pub(crate) struct Vertex<'a> {
 impl Onward {
     /// No rays, in room that was used before.
     pub fn clear(&mut self) {
-        self.reflected.clear();
+        self.rays.clear();
         self.refracted.clear();
     }
 
-    /// All of them: those alike are neighbours.
-    pub fn all(&mut self) -> &mut Rays {
-        self.reflected.append(&mut self.refracted);
-        &mut self.reflected
+    /// Puts all together: those alike are neighbours.
+    pub fn merge(&mut self) {
+        self.rays.append(&mut self.refracted);
     }
 
     /// Adds the mirror ray and the transmitted ray of a point where the ray of a `path` arrives, which has this number; what
@@ -140,7 +140,7 @@ impl Onward {
             stats.reflected_rays += 1;
             let from = v.surface.departure(v.found.object, v.found.hit, v.side);
             let ray = from.ray(mirror(v.direction, v.normal));
-            self.reflected.push(ray, from, next(reflect, path.around));
+            self.rays.push(ray, from, next(reflect, path.around));
         }
         if let Some((direction, share)) = through
             && counts(share)

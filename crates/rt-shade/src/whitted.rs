@@ -36,7 +36,18 @@ pub(crate) struct Tracer<'s> {
     hits: Vec<Struck>,
     brought: Vec<Color>,
     onward: Vec<Onward>,
+    levels: Vec<Level>,
     pub stats: Stats,
+}
+
+/// Rays of one depth that are being followed, some at a time.
+struct Level {
+    onward: Onward,
+    /// What was known of media before.
+    known: usize,
+    /// The rays from `start` to `end` are those whose own rays are on their way; those before are done.
+    start: usize,
+    end: usize,
 }
 
 /// As many records of hits as stay in the first cache until they are used.
@@ -64,6 +75,7 @@ impl<'s> Tracer<'s> {
             hits: Vec::new(),
             brought: Vec::new(),
             onward: Vec::new(),
+            levels: Vec::new(),
             stats: Stats::default(),
         }
     }
@@ -87,7 +99,7 @@ impl<'s> Tracer<'s> {
         let count = if self.casts_together() { rays.len().max(1) } else { TOGETHER };
         let parts = rays.chunks(count).zip(found.chunks(count)).zip(colors.chunks_mut(count));
         for ((rays, found), colors) in parts {
-            self.see(rays, found, Paths::Alike(path), 1, colors);
+            self.see(rays, found, path, colors);
         }
     }
 
@@ -97,11 +109,63 @@ impl<'s> Tracer<'s> {
         self.shadows && self.scene.all_opaque && self.scene.seen_by_lamp.iter().any(Option::is_none)
     }
 
-    /// The colours that rays of a depth see.
-    fn see(&mut self, rays: &[Ray], found: &[Option<Found>], paths: Paths, depth: u32, colors: &mut [Color]) {
+    /// The colours that some rays from the eye see.
+    ///
+    /// Depth first, some rays at a time, so that little waits; not by recursion, as a depth of a thousand is legal.
+    fn see(&mut self, rays: &[Ray], found: &[Option<Found>], path: Path, colors: &mut [Color]) {
+        let mut levels = take(&mut self.levels);
+        levels.extend(self.light(rays, found, Paths::Alike(path), 1, colors));
+        loop {
+            let depth = levels.len() as u32 + 1;
+            let Some(level) = levels.last_mut() else { break };
+            let Rays { rays, found, paths, colors: seen, .. } = &mut level.onward.rays;
+            if level.end < rays.len() {
+                (level.start, level.end) = (level.end, (level.end + TOGETHER).min(rays.len()));
+                let part = level.start..level.end;
+                let (rays, found) = (&rays[part.clone()], &found[part.clone()]);
+                let paths = Paths::Each(&paths[part.clone()]);
+                let next = self.light(rays, found, paths, depth, &mut seen[part]);
+                levels.extend(next);
+                continue;
+            }
+            let Some(Level { onward, known, .. }) = levels.pop() else { break };
+            let colors = match levels.last_mut() {
+                Some(Level { onward, start, end, .. }) => &mut onward.rays.colors[*start..*end],
+                None => &mut *colors,
+            };
+            self.bring(&onward.rays, colors);
+            self.media.forget(known);
+            self.onward.push(onward);
+        }
+        self.levels = levels;
+    }
+
+    /// Adds what rays bring to the colours of those that they come from: first what all bring to a colour, then that to the
+    /// colour itself, local + (R mirror + T refracted).
+    fn bring(&mut self, rays: &Rays, colors: &mut [Color]) {
+        self.brought.clear();
+        self.brought.resize(colors.len(), Color::BLACK);
+        for (path, seen) in rays.paths.iter().zip(&rays.colors) {
+            self.brought[path.parent as usize] += path.share * *seen;
+        }
+        for (color, brought) in colors.iter_mut().zip(&self.brought) {
+            *color += *brought;
+        }
+    }
+
+    /// The colours of what rays of a depth hit, but for what rays bring that go on: these, if there are any.
+    fn light(
+        &mut self,
+        rays: &[Ray],
+        found: &[Option<Found>],
+        paths: Paths,
+        depth: u32,
+        colors: &mut [Color],
+    ) -> Option<Level> {
         let (mut surfaces, mut hits, mut queues) =
             (take(&mut self.surfaces), take(&mut self.hits), take(&mut self.queues));
         let mut onward = self.onward.pop().unwrap_or_default();
+        onward.clear();
         let known = self.media.mark();
         let scene = self.scene;
         let cast_together = self.casts_together();
@@ -133,36 +197,46 @@ impl<'s> Tracer<'s> {
             queue.cast(&scene.geometry, &mut self.stats, colors);
         }
         (self.surfaces, self.hits, self.queues) = (surfaces, hits, queues);
-        self.follow(onward.all(), depth + 1, colors);
-        onward.clear();
-        self.onward.push(onward);
-        self.media.forget(known);
-    }
-
-    /// Adds what rays bring to the colours of those that they come from.
-    fn follow(&mut self, onward: &mut Rays, depth: u32, colors: &mut [Color]) {
-        let Rays { rays, within, from, paths, found, colors: seen } = onward;
+        onward.merge();
+        let Rays { rays, within, from, found, colors, .. } = &mut onward.rays;
         if rays.is_empty() {
-            return;
+            self.onward.push(onward);
+            return None;
         }
         found.clear();
         found.resize(rays.len(), None);
-        self.scene.geometry.nearest_leaving_many(rays, within, from, found);
+        scene.geometry.nearest_leaving_many(rays, within, from, found);
         self.stats.secondary_hits += found.iter().flatten().count() as u64;
-        seen.clear();
-        seen.resize(rays.len(), Color::BLACK);
-        let parts = rays.chunks(TOGETHER).zip(found.chunks(TOGETHER)).zip(paths.chunks(TOGETHER));
-        for (((rays, found), paths), colors) in parts.zip(seen.chunks_mut(TOGETHER)) {
-            self.see(rays, found, Paths::Each(paths), depth, colors);
-        }
-        // First what all rays bring to a colour, then the colour itself: local + (R mirror + T refracted).
-        self.brought.clear();
-        self.brought.resize(colors.len(), Color::BLACK);
-        for (path, seen) in paths.iter().zip(seen) {
-            self.brought[path.parent as usize] += path.share * *seen;
-        }
-        for (color, brought) in colors.iter_mut().zip(&self.brought) {
-            *color += *brought;
-        }
+        colors.clear();
+        colors.resize(rays.len(), Color::BLACK);
+        Some(Level { onward, known, start: 0, end: 0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Antialias, Attenuation, Camera, Light, Material, Scene, Settings, render};
+    use rt_core::shape::Sphere;
+
+    /// The greatest legal depth is reached, on a thread of the usual stack.
+    #[test]
+    fn a_thousand_reflections() {
+        let mirror = Material { reflect: 0.999, ..Material::default() };
+        let scene = Scene::builder()
+            .camera(Camera::new([0.0; 3], [0.0, 0.1, 1.0], [0.0, 1.0, 0.0], 60.0).unwrap())
+            .light(Light::point([0.0, 1.0, 0.0], [0.9; 3], Attenuation::NONE).unwrap())
+            .object("inside", Sphere::new([0.0; 3], 3.0).unwrap(), mirror)
+            .build()
+            .unwrap();
+        let settings = Settings {
+            width: 8,
+            height: 8,
+            max_depth: Settings::MOST_DEPTH,
+            antialias: Antialias::None,
+            threads: 1,
+            ..Settings::default()
+        };
+        let done = render(&scene, &settings, &()).unwrap();
+        assert_eq!(done.stats.reflected_rays, 64 * u64::from(Settings::MOST_DEPTH - 1));
     }
 }

@@ -352,7 +352,7 @@ impl<Q: Query + Together> Packet<'_, Q> {
 }
 
 impl<Q: Query + Together> Packet<'_, Q> {
-    /// Tells the queries of the tori that wait; of `all`, or of those that make fours.
+    /// Tells the queries of the tori that wait; of `all`, or of those that make eights.
     #[inline(always)]
     fn settle<L: Lanes>(
         &mut self,

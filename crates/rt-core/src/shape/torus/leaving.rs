@@ -14,6 +14,7 @@
 use super::Torus;
 use super::exact::{Crossings, uncertainty};
 use super::line::Line;
+use super::together::in_own_scale;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
 use crate::kernel::{Four, Lanes, Product, Real, Task, Vector};
@@ -114,9 +115,7 @@ pub(crate) fn return_each<L: Lanes>(
     from: [&Departure; 4],
 ) -> (u32, u32) {
     let [a, b, c, d] = tori;
-    let center = Vector::new(lanes, [&a.center, &b.center, &c.center, &d.center]);
-    let per_unit = Four::new(lanes, [exp2i(-a.scale), exp2i(-b.scale), exp2i(-c.scale), exp2i(-d.scale)]);
-    let ScaledFour { direction, power, sound, .. } = ScaledFour::about(lanes, rays, center, per_unit);
+    let (ScaledFour { direction, power, sound, .. }, _, per_unit) = in_own_scale(lanes, tori, rays);
     let major = Four::new(lanes, [a.major_scaled, b.major_scaled, c.major_scaled, d.major_scaled]);
     let minor = Four::new(lanes, [a.minor_scaled, b.minor_scaled, c.minor_scaled, d.minor_scaled]);
     let axis = Vector::new(lanes, [&a.axis, &b.axis, &c.axis, &d.axis]);

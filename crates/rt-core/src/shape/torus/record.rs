@@ -3,6 +3,7 @@
 use super::Torus;
 use super::exact::{self, Crossings};
 use super::line::Line;
+use super::together::in_own_scale;
 use crate::double::{Double, two_difference, two_sum};
 use crate::double_vector::DoubleVector;
 use crate::kernel::{Dekker, Four, Lanes, Product, Real, Task, Vector, run};
@@ -96,10 +97,8 @@ impl Torus {
         surfaces: [&mut Surface; 4],
     ) {
         let [a, b, c, d] = tori;
-        let center = Vector::new(lanes, [&a.center, &b.center, &c.center, &d.center]);
-        let per_unit = Four::new(lanes, [exp2i(-a.scale), exp2i(-b.scale), exp2i(-c.scale), exp2i(-d.scale)]);
-        let ScaledFour { relative, direction, power, sound } =
-            ScaledFour::about(lanes, rays, center, per_unit);
+        let (scaled, center, per_unit) = in_own_scale(lanes, tori, rays);
+        let ScaledFour { relative, direction, power, sound } = scaled;
         let tube = Tube {
             axis: DoubleVector::new(lanes, [&a.frame[2], &b.frame[2], &c.frame[2], &d.frame[2]]),
             major: Four::new(lanes, [a.major_scaled, b.major_scaled, c.major_scaled, d.major_scaled]),

@@ -224,6 +224,18 @@ impl Waiting {
     }
 }
 
+/// Four rays, each in the scale of a torus of its own; the centres, and two to the power of minus each scale.
+#[inline(always)]
+pub(super) fn in_own_scale<L: Lanes>(
+    lanes: L,
+    [a, b, c, d]: [&Torus; 4],
+    rays: [&Ray; 4],
+) -> (ScaledFour<L>, Vector<Four<L>>, Four<L>) {
+    let center = Vector::new(lanes, [&a.center, &b.center, &c.center, &d.center]);
+    let per_unit = Four::new(lanes, [exp2i(-a.scale), exp2i(-b.scale), exp2i(-c.scale), exp2i(-d.scale)]);
+    (ScaledFour::about(lanes, rays, center, per_unit), center, per_unit)
+}
+
 /// What four rays find of one torus.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Told {
