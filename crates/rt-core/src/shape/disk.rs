@@ -1,11 +1,10 @@
 //! A flat round disk: `normal . (p - center) = 0` and `|p - center| <= radius`.
 
-use super::flat::{self, Doubt, Facing, Relative, Rough, U, Verdict};
+use super::flat::{self, Doubt, Facing, Glance, Relative, Rough, U, Verdict};
 use super::meeting::{self, ExactPlane, Meeting, Piece};
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Product, Task, run};
-use crate::math::exp2i;
 use crate::math::sqrt;
 use crate::scaled::{checked_length, checked_point, range_guard, times_power};
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
@@ -141,34 +140,20 @@ impl Disk {
 struct Rim {
     /// The square of the radius, or NaN where that would leave the range of the exponents.
     square: f64,
-    /// 2^-36 and 8 u of it, three times.
+    /// [`Glance::CLEAR`] of it.
     least: f64,
-    /// Three radii.
-    reach: f64,
 }
 
 impl Rim {
     fn new(radius: f64) -> Rim {
         let square = radius * radius + range_guard(radius);
-        Rim { square, least: 3.0 * (exp2i(-36) + 8.0 * U) * square, reach: 3.0 * radius }
+        Rim { square, least: Glance::CLEAR * square }
     }
 
     /// How much more the square of the radius is than that of the distance of the place.
     #[inline(always)]
     fn depth(&self, rough: &Rough) -> f64 {
         self.square - rough.distance_squared()
-    }
-
-    /// A bound on its error for a close parameter, as simple as can be: see [`Disk::plainly`].
-    ///
-    /// A place nearer than 2 r errs by 2^-39 of `|t d| <= |v| + 2 r` along the ray, v the origin seen from the centre; one
-    /// beyond, by that of `|v| + rho`. Either is below e if |rho - r| is, for e = 2^-37 |v| + 2^-36 r + 8 u r. For a hit
-    /// that is more than what [`Disk::plainly`] allows for: it does not doubt what this does not. With a the first part of
-    /// it and l the others, `e (e + 2 r)` is less than `a (a + 3 r) + 3 l r`.
-    #[inline(always)]
-    fn doubt(&self, rough: &Rough) -> f64 {
-        let along = exp2i(-37) * rough.reach();
-        along * (along + self.reach) + self.least
     }
 }
 
@@ -228,19 +213,19 @@ impl Piece for Disk {
 impl Primitive for Disk {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let rough = Rough::new(&self.facing, ray);
-        if rough.is_close()
-            && let Some(mut meets) = rough.is_within(within)
+        let glance = Glance::new(&self.facing, ray);
+        if glance.is_close()
+            && let Some(mut meets) = glance.is_within(within)
         {
             if meets {
-                let depth = self.rim.depth(&rough);
-                if !(depth.abs() > self.rim.doubt(&rough)) {
+                let excess = glance.excess(self.rim.square);
+                if !(excess.abs() > glance.doubt() + self.rim.least) {
                     return self.hit_closely(ray, within);
                 }
-                meets = depth > 0.0;
+                meets = excess.is_sign_negative();
             }
             // No branch between hit and miss, since neighbouring rays may differ.
-            return Hit::only(rough.t, meets);
+            return Hit::only(glance.t, meets);
         }
         self.hit_closely(ray, within)
     }
@@ -380,8 +365,7 @@ mod tests {
         assert!(count[0] < 10 && count[1] > 1000 && count[2] > 1000, "{count:?}");
     }
 
-    /// The doubt at the rim is what its derivation says, enough for any close parameter, and decides no hit that the sharper
-    /// bound does not.
+    /// What is certain at a glance is so, however near to the rim, and how near that is.
     #[test]
     fn how_near_to_the_rim_a_place_is_told() {
         let mut random = crate::testing::Random::new(2);
@@ -392,28 +376,48 @@ mod tests {
             let out = disk.normal.cross(random.direction()).normalize();
             let share = 1.0 + random.sign() * random.magnitude(-13.0, 0.0);
             let target = disk.center() + out * (radius * share);
-            let origin = target + random.direction() * (radius * random.magnitude(-1.0, 2.0));
+            let origin = target + random.direction() * (radius * random.magnitude(-1.0, 3.0));
             let ray = Ray::new(origin, (target - origin) * random.magnitude(-1.0, 1.0));
-            let rough = Rough::new(&disk.facing, &ray);
-            if !rough.is_close() {
+            let glance = Glance::new(&disk.facing, &ray);
+            if !glance.is_close() {
                 continue;
             }
-            let (depth, doubt) = (disk.rim.depth(&rough), disk.rim.doubt(&rough));
-            let far = (ray.origin - disk.center()).abs().element_sum();
-            let expected = exp2i(-37) * (far + 2.0 * radius) * 3.0 * radius;
-            assert!(doubt >= expected && doubt < 1.001 * expected, "{disk:?} {ray:?}: {doubt} {expected}");
-            if depth.abs() <= doubt {
+            assert_eq!(glance.t, Rough::new(&disk.facing, &ray).t);
+            let (excess, doubt) = (glance.excess(disk.rim.square), glance.doubt() + disk.rim.least);
+            let far = (ray.origin - disk.center()).length();
+            assert!(doubt <= 1.001 * (exp2i(-39) * far * far + exp2i(-33) * radius * radius));
+            if excess.abs() <= doubt {
                 count[0] += 1;
                 continue;
             }
             let at = meeting::meet(&disk, &ray).unwrap();
             let inside = run(InDisk { at: &at, radius });
-            assert_eq!(depth > 0.0, inside, "{disk:?} {ray:?}");
+            assert_eq!(excess < 0.0, inside, "{disk:?} {ray:?}");
             assert_eq!(disk.hit(&ray, Interval::LINE).is_some(), inside, "{disk:?} {ray:?}");
-            assert!(!inside || disk.plainly(&ray, Interval::LINE).is_ok(), "{disk:?} {ray:?}");
             count[1 + usize::from(inside)] += 1;
         }
         assert!(count.iter().all(|&count| count > 500), "{count:?}");
+    }
+
+    /// From so far away that squares overflow, a disk is still found, and missed.
+    #[test]
+    fn from_where_squares_overflow() {
+        let disk = Disk::new([0.0; 3], [0.0, 1.0, 0.0], 1.0).unwrap();
+        for power in [200, 440, 499, 500, 501, 505, 508, 511, 512, 600] {
+            for speed in [-300, 0, 300, 508, 511, 512, 513] {
+                let (away, along) = (exp2i(power), exp2i(speed));
+                for (place, inside) in [(0.0, true), (0.5, true), (1.5, false)] {
+                    let ray = Ray::new([place, away, 0.0], [0.0, -along, 0.0]);
+                    assert_eq!(
+                        disk.hit(&ray, Interval::LINE).is_some(),
+                        inside,
+                        "2^{power} 2^{speed} {place}"
+                    );
+                }
+                let beside = Ray::new([away, away, 0.0], [-along * 0.75, -along, 0.0]);
+                assert!(disk.hit(&beside, Interval::LINE).is_none(), "2^{power} 2^{speed}");
+            }
+        }
     }
 
     /// A parameter that underflows to zero is not inside an interval that begins at minus zero.
