@@ -227,14 +227,20 @@ impl Candidate {
     /// The hit, or `None`, where that is certain; otherwise `exact` decides.
     #[inline(always)]
     pub fn decide(&self, within: Interval, exact: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
+        self.certainly(within).unwrap_or_else(exact)
+    }
+
+    /// The hit, or none, where that is certain.
+    #[inline(always)]
+    pub fn certainly(&self, within: Interval) -> Option<Option<Hit>> {
         let Candidate { t, margin, .. } = *self;
         if t - within.min > margin && within.max - t > margin {
-            Some(Hit::inside(t, self.part, self.root))
+            Some(Some(Hit::inside(t, self.part, self.root)))
         } else if within.min - t > margin || t - within.max > margin || t == within.min || t == within.max {
             // An end with these very bits is where this crossing was reported before: it is not reported twice.
-            None
+            Some(None)
         } else {
-            exact()
+            None
         }
     }
 

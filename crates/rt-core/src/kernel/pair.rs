@@ -96,6 +96,11 @@ impl Pair {
     pub fn is_below(self, other: Pair) -> bool {
         sse2!(_mm_movemask_pd(_mm_cmpnlt_pd(self.0, other.0))) == 0
     }
+    /// Which are less than those of the other, one bit each, the low lane first.
+    #[inline(always)]
+    pub fn below(self, other: Pair) -> i32 {
+        sse2!(_mm_movemask_pd(_mm_cmplt_pd(self.0, other.0)))
+    }
     /// The signs of both, one bit each, the low lane first.
     #[inline(always)]
     pub fn signs(self) -> i32 {
@@ -161,6 +166,11 @@ impl Pair {
     #[inline(always)]
     pub fn is_below(self, other: Pair) -> bool {
         self.0[0] < other.0[0] && self.0[1] < other.0[1]
+    }
+    /// Which are less than those of the other, one bit each, the low lane first.
+    #[inline(always)]
+    pub fn below(self, other: Pair) -> i32 {
+        i32::from(self.0[0] < other.0[0]) | i32::from(self.0[1] < other.0[1]) << 1
     }
     /// The signs of both, one bit each, the low lane first.
     #[inline(always)]

@@ -31,7 +31,7 @@ use crate::scaled::{
 use crate::{Aabb, Departure, Error, Hit, Interval, Ray, Side};
 use glam::DVec3;
 use line::{FindLine, Line};
-use rough::{Numbers, Rough, Span};
+use rough::{Glance, Numbers, Rough, Span};
 
 /// The part number of the side.
 pub(super) const SIDE: u32 = 0;
@@ -236,17 +236,76 @@ impl Frustum {
     /// See [`Primitive::hit`](crate::Primitive::hit). `SLOPED`: the radii differ.
     #[inline(always)]
     pub fn hit<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        let chord = match self.numbers.chord::<SLOPED>(ray.origin - self.base, ray.direction) {
-            Rough::Miss => return None,
-            Rough::Doubt => return self.hit_in_doubt::<SLOPED>(ray, within),
-            Rough::Chord(chord) => chord,
-        };
-        match chord.crossings() {
-            None => self.hit_in_doubt::<SLOPED>(ray, within),
-            Some(None) => None,
-            Some(Some([first, last])) => {
-                self.crossing(&first(), ray, within, 0).or_else(|| self.crossing(&last(), ray, within, 1))
+        match self.numbers.glance::<SLOPED>(ray.origin - self.base, ray.direction) {
+            Glance::Told(rough) => self.hit_of::<SLOPED>(rough, ray, within),
+            Glance::AlongCylinder([enter, leave, margin, root]) => {
+                self.hit_along_cylinder(ray, within, enter, leave, margin, root)
             }
+            Glance::AlongAxis => self.hit_along_axis(ray, within),
+            Glance::AlongSide([a, b, root, margin]) => self.hit_along_side(ray, within, a, b, root, margin),
+        }
+    }
+
+    /// The same on a line close to the axis of a cylinder, which the way of others need not hold registers for; its numbers
+    /// travel in registers.
+    #[inline(never)]
+    fn hit_along_cylinder(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        enter: f64,
+        leave: f64,
+        margin: f64,
+        root: f64,
+    ) -> Option<Hit> {
+        let numbers = [enter, leave, margin, root];
+        let rough = self.numbers.along_cylinder(ray.origin - self.base, ray.direction, numbers);
+        self.hit_of::<false>(rough, ray, within)
+    }
+
+    /// The same on a line close to the axis of a cone.
+    #[inline(never)]
+    fn hit_along_axis(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        self.hit_of::<true>(self.numbers.along_axis(ray.origin - self.base, ray.direction), ray, within)
+    }
+
+    /// The same on a line nearly parallel to the side of a cone.
+    #[inline(never)]
+    fn hit_along_side(
+        &self,
+        ray: &Ray,
+        within: Interval,
+        a: f64,
+        b: f64,
+        root: f64,
+        margin: f64,
+    ) -> Option<Hit> {
+        let rough = self.numbers.along_side(ray.origin - self.base, ray.direction, [a, b, root, margin]);
+        self.hit_of::<true>(rough, ray, within)
+    }
+
+    /// The first crossing of what `f64` says of a line.
+    #[inline(always)]
+    fn hit_of<const SLOPED: bool>(&self, rough: Rough, ray: &Ray, within: Interval) -> Option<Hit> {
+        match rough {
+            Rough::Miss => None,
+            Rough::Doubt => self.hit_in_doubt::<SLOPED>(ray, within),
+            Rough::Chord(chord) => match chord.hit(self.closed, within) {
+                Some(hit) => hit,
+                None => self.hit_closely::<SLOPED>(ray, within),
+            },
+        }
+    }
+
+    /// The same where a crossing is close to a rim or to an end of the interval.
+    #[inline(never)]
+    fn hit_closely<const SLOPED: bool>(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        match self.rough::<SLOPED>(ray) {
+            Some(Span::Miss) => None,
+            Some(Span::Crossings([first, last])) => {
+                self.crossing(&first, ray, within, 0).or_else(|| self.crossing(&last, ray, within, 1))
+            }
+            None => self.hit_in_doubt::<SLOPED>(ray, within),
         }
     }
 

@@ -32,9 +32,11 @@
 //! cosine between ray and normal on cylinders and cones, and by less than 2^-30 S.
 
 use super::{BASE, SIDE, TOP};
+use crate::kernel::Pair;
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{Candidate, moderate};
 use crate::shape::flat::U;
+use crate::{Hit, Interval};
 use glam::DVec3;
 
 /// How many times the bound of its error a cylinder's discriminant must be before a crossing found in `f64` is taken.
@@ -70,6 +72,18 @@ pub(super) enum Rough {
     Chord(Chord),
     /// It takes more digits to tell, or a wider range of the exponents.
     Doubt,
+}
+
+/// The same, where only some lines need more to be done.
+pub(super) enum Glance {
+    /// Nothing more.
+    Told(Rough),
+    /// The numbers for [`along_cylinder`](Numbers::along_cylinder).
+    AlongCylinder([f64; 4]),
+    /// [`along_axis`](Numbers::along_axis).
+    AlongAxis,
+    /// The numbers for [`along_side`](Numbers::along_side).
+    AlongSide([f64; 4]),
 }
 
 /// Where a line is inside the side.
@@ -110,6 +124,17 @@ impl Numbers {
     /// `w` is the origin minus the base; `d` the direction.
     #[inline(always)]
     pub fn chord<const SLOPED: bool>(&self, w: DVec3, d: DVec3) -> Rough {
+        match self.glance::<SLOPED>(w, d) {
+            Glance::Told(rough) => rough,
+            Glance::AlongCylinder(numbers) => self.along_cylinder(w, d, numbers),
+            Glance::AlongAxis => self.along_axis(w, d),
+            Glance::AlongSide(numbers) => self.along_side(w, d, numbers),
+        }
+    }
+
+    /// The same up to where lines close to the axis or to the side go their own ways.
+    #[inline(always)]
+    pub fn glance<const SLOPED: bool>(&self, w: DVec3, d: DVec3) -> Glance {
         let Numbers { axis, height, base_radius, slope, reach, size } = *self;
         let (z, z_growth) = (axis.dot(w), axis.dot(d));
         let n = axis.cross(d);
@@ -124,15 +149,15 @@ impl Numbers {
         let doubt = reach * far * (square * (22.0 * U) + z_growth * z_growth * (3.0 * U));
         // Then the squares of all discriminants are in range.
         if !moderate(scale) {
-            return Rough::Doubt;
+            return Glance::Told(Rough::Doubt);
         }
         if inside < -2.0 * doubt && doubt < 4.0 * scale {
-            return Rough::Miss;
+            return Glance::Told(Rough::Miss);
         }
         let error = far * (16.0 * U);
         if !SLOPED {
             if !(inside > (2.0 * CLEAR) * doubt) {
-                return Rough::Doubt;
+                return Glance::Told(Rough::Doubt);
             }
             let inverse = 1.0 / square;
             let middle = -away.dot(d - axis * z_growth) * inverse;
@@ -140,24 +165,16 @@ impl Numbers {
             let clearer = inside > (2.0 * CLEAR * CLEARER) * doubt;
             let margin = half * if clearer { exp2i(-16) } else { exp2i(-8) };
             let (enter, leave) = (middle - half, middle + half);
-            let chord = Chord {
-                enter,
-                leave,
-                margins: [margin; 2],
-                starts: true,
-                ends: true,
-                z,
-                z_growth,
-                height,
-                error,
-            };
             if z_growth * z_growth > 64.0 * square {
-                return self.along_cylinder(w, d, chord, sqrt(inside));
+                return Glance::AlongCylinder([enter, leave, margin, sqrt(inside)]);
             }
-            return Rough::Chord(chord);
+            let margins = [margin; 2];
+            let (starts, ends) = (true, true);
+            let chord = Chord { enter, leave, margins, starts, ends, z, z_growth, height, error };
+            return Glance::Told(Rough::Chord(chord));
         }
         if z_growth * z_growth > 8.0 * square {
-            return self.along_axis(w, d);
+            return Glance::AlongAxis;
         }
         let (e0, e1) = (base_radius + slope * z, slope * z_growth);
         let across = d - axis * z_growth;
@@ -172,7 +189,7 @@ impl Numbers {
         if !(depth > 0.0 && depths > least) {
             // `(2 V + Q)^2 <= 8 V^2 + 2 Q^2`.
             let misses = depth < 0.0 && depths > doubts * (8.0 * length + 2.0 * doubts);
-            return if misses { Rough::Miss } else { Rough::Doubt };
+            return Glance::Told(if misses { Rough::Miss } else { Rough::Doubt });
         }
         let margin = if depths > (CLEARER * CLEARER) * least { exp2i(-16) } else { exp2i(-8) };
         let root = sqrt(depth);
@@ -180,9 +197,9 @@ impl Numbers {
         let (a, sum) = (square - e1 * e1, square + e1 * e1);
         if !(a.abs() > 0.25 * sum) {
             return if far < NEAR * size && steep < STEEP && a.abs() > exp2i(-14) * sum {
-                self.along_side(w, d, [a, b, root, margin])
+                Glance::AlongSide([a, b, root, margin])
             } else {
-                self.along_axis(w, d)
+                Glance::AlongAxis
             };
         }
         let inverse = 1.0 / a;
@@ -191,27 +208,38 @@ impl Numbers {
         let margin = half * margin;
         // On a line steeper than the side, one of the crossings is on the other nappe.
         let (starts, ends) = (a > 0.0 || e1 > 0.0, a > 0.0 || e1 < 0.0);
-        Rough::Chord(Chord { enter, leave, margins: [margin; 2], starts, ends, z, z_growth, height, error })
+        let margins = [margin; 2];
+        Glance::Told(Rough::Chord(Chord { enter, leave, margins, starts, ends, z, z_growth, height, error }))
     }
 }
 
 impl Numbers {
-    /// [`chord`](Numbers::chord) for a cylinder and a line at less than 7 degrees from its axis, for which K > 8: `root` is
-    /// `sqrt(D)`.
+    /// [`chord`](Numbers::chord) for a cylinder and a line at less than 7 degrees from its axis, for which K > 8, of its parameters, their
+    /// margin and `sqrt(D)`.
     ///
     /// B / A errs by the rounding of d', 3 u |d|, times `|w'| / |d'|^2`: in length along the ray by 3 u K^2 |w'|, which is 3 K
     /// times u S over the cosine, 1 / K, where the ray begins far from the axis: up to K = 8, 24 of the 64 that are promised. A step of Newton's method, whose slope is
     /// `-+2 sqrt(D)`, gives the digits of the place itself.
     #[inline(always)]
-    fn along_cylinder(&self, w: DVec3, d: DVec3, chord: Chord, root: f64) -> Rough {
+    pub fn along_cylinder(&self, w: DVec3, d: DVec3, [enter, leave, margin, root]: [f64; 4]) -> Rough {
         let half = 0.5 / root;
         let rest = |t: f64| {
             let p = w + d * t;
             let away = p - self.axis * self.axis.dot(p);
             (away.dot(away) - self.base_radius * self.base_radius) * half
         };
-        let (enter, leave) = (chord.enter + rest(chord.enter), chord.leave - rest(chord.leave));
-        Rough::Chord(Chord { enter, leave, ..chord })
+        let far = w.x.abs() + w.y.abs() + w.z.abs() + self.size;
+        Rough::Chord(Chord {
+            enter: enter + rest(enter),
+            leave: leave - rest(leave),
+            margins: [margin; 2],
+            starts: true,
+            ends: true,
+            z: self.axis.dot(w),
+            z_growth: self.axis.dot(d),
+            height: self.height,
+            error: far * (16.0 * U),
+        })
     }
 
     /// [`chord`](Numbers::chord) for a cone and a line nearly parallel to its side, from not far away.
@@ -224,7 +252,7 @@ impl Numbers {
     /// A step of Newton's method, whose slope is `-+2 sqrt(D)`, gives them the digits of the quadratic at the place itself.
     /// Measured: 6 u S over the cosine between ray and normal.
     #[inline(always)]
-    fn along_side(&self, w: DVec3, d: DVec3, [a, b, root, margin]: [f64; 4]) -> Rough {
+    pub fn along_side(&self, w: DVec3, d: DVec3, [a, b, root, margin]: [f64; 4]) -> Rough {
         let Numbers { axis, height, base_radius, slope, size, .. } = *self;
         let (z, z_growth) = (axis.dot(w), axis.dot(d));
         // The quadratic, in parts of its slope.
@@ -266,7 +294,7 @@ impl Numbers {
     /// Where D is more than 2^14 times that, `F < q / 2^16`, and the parameters err by less than 2^-15 from the root and
     /// twice 2^-16 from the rest, of half the chord: its 2^-13 is a margin. Where D is 2^20 times that, so is 2^-19.
     #[inline(always)]
-    fn along_axis(&self, w: DVec3, d: DVec3) -> Rough {
+    pub fn along_axis(&self, w: DVec3, d: DVec3) -> Rough {
         let Numbers { axis, height, base_radius, slope, reach, size } = *self;
         let (z, z_growth) = (axis.dot(w), axis.dot(d));
         let (across, away) = (d - axis * z_growth, w - axis * z);
@@ -324,40 +352,9 @@ enum Zone {
     Below,
     Between,
     Above,
-    Doubt,
 }
 
 impl Chord {
-    #[inline(always)]
-    fn zone(&self, t: f64, margin: f64) -> Zone {
-        // Over the middle between the caps: the height errs by 5 u S through z, 4 u S through its growth, and roundings.
-        let over = (self.z - 0.5 * self.height) + t * self.z_growth;
-        let doubt = self.z_growth.abs() * margin + self.error;
-        let beyond = over.abs() - 0.5 * self.height;
-        if beyond < -doubt {
-            Zone::Between
-        } else if beyond > doubt {
-            if over > 0.0 { Zone::Above } else { Zone::Below }
-        } else {
-            Zone::Doubt
-        }
-    }
-
-    #[inline(always)]
-    fn first(&self) -> Zone {
-        if self.starts { self.zone(self.enter, self.margins[0]) } else { self.beyond(self.z_growth < 0.0) }
-    }
-
-    #[inline(always)]
-    fn last(&self) -> Zone {
-        if self.ends { self.zone(self.leave, self.margins[1]) } else { self.beyond(self.z_growth > 0.0) }
-    }
-
-    #[inline(always)]
-    fn beyond(&self, above: bool) -> Zone {
-        if above { Zone::Above } else { Zone::Below }
-    }
-
     #[inline(always)]
     fn on_side(&self, t: f64, root: u32) -> Candidate {
         Candidate { t, margin: self.margins[root as usize & 1], part: SIDE, root }
@@ -379,34 +376,71 @@ impl Chord {
     /// digits to tell.
     #[inline(always)]
     fn zones(&self) -> Option<Option<[Zone; 2]>> {
-        let (first, last) = (self.first(), self.last());
-        if first == Zone::Doubt || last == Zone::Doubt {
+        // Over the middle between the caps: the height errs by 5 u S through z, 4 u S through its growth, and roundings.
+        let half = 0.5 * self.height;
+        let [first, last] = self.margins;
+        let over =
+            Pair::splat(self.z - half) + Pair::new(self.enter, self.leave) * Pair::splat(self.z_growth);
+        let growth = self.z_growth.abs();
+        let doubt = Pair::new(growth * first + self.error, growth * last + self.error);
+        let size = over.abs();
+        // Ends that are not on the frustum's nappe are beyond a cap.
+        let real = i32::from(self.starts) | i32::from(self.ends) << 1;
+        let between = doubt.below(Pair::splat(half) - size) & real;
+        if between == 3 {
+            return Some(Some([Zone::Between; 2]));
+        }
+        let out = doubt.below(size - Pair::splat(half)) | (3 & !real);
+        if between | out != 3 {
             return None;
         }
-        if first == last && first != Zone::Between {
-            return Some(None);
+        let below = [
+            if self.starts { over.signs() & 1 != 0 } else { !(self.z_growth < 0.0) },
+            if self.ends { over.signs() & 2 != 0 } else { !(self.z_growth > 0.0) },
+        ];
+        if between == 0 {
+            if below[0] == below[1] {
+                return Some(None);
+            }
+            // Both caps, each height in doubt by `error`: the nearer one as reported must not lie behind the farther one as it
+            // is, lest an interval that ends there still holds that.
+            if !(self.height > 2.0 * self.error) {
+                return None;
+            }
         }
-        // Both caps, each height in doubt by `error`: the nearer one as reported must not lie behind the farther one as it
-        // is, lest an interval that ends there still holds that.
-        if first != Zone::Between && last != Zone::Between && !(self.height > 2.0 * self.error) {
-            return None;
-        }
-        Some(Some([first, last]))
+        let zone = |end: usize| match between >> end & 1 {
+            1 => Zone::Between,
+            _ if below[end] => Zone::Below,
+            _ => Zone::Above,
+        };
+        Some(Some([zone(0), zone(1)]))
     }
 
-    /// The crossings with the solid, each when it is asked for; `None` where it takes more digits to tell.
+    /// The first crossing with the solid in the interval; `None` where it takes more digits to tell.
     #[inline(always)]
-    pub fn crossings(&self) -> Option<Option<[impl Fn() -> Candidate; 2]>> {
-        let each = |zone: Zone, t: f64, root: u32| move || self.crossing(zone, t, root);
-        Some(self.zones()?.map(|[first, last]| [each(first, self.enter, 0), each(last, self.leave, 1)]))
+    pub fn hit(&self, closed: bool, within: Interval) -> Option<Option<Hit>> {
+        let Some([first, last]) = self.zones()? else { return Some(None) };
+        if first == Zone::Between || closed {
+            let hit = self.crossing(first, self.enter, 0).certainly(within)?;
+            if hit.is_some() {
+                return Some(hit);
+            }
+        }
+        if last == Zone::Between || closed {
+            self.crossing(last, self.leave, 1).certainly(within)
+        } else {
+            Some(None)
+        }
     }
 
     /// The crossings with the solid; `None` where it takes more digits to tell.
     #[inline(always)]
     pub fn span(&self) -> Option<Span> {
-        Some(match self.crossings()? {
+        Some(match self.zones()? {
             None => Span::Miss,
-            Some([first, last]) => Span::Crossings([first(), last()]),
+            Some([first, last]) => {
+                Span::Crossings([self.crossing(first, self.enter, 0), self.crossing(last, self.leave, 1)])
+            }
         })
     }
 }
