@@ -125,9 +125,10 @@ impl<L: Lanes> ScaledFour<L> {
 /// The largest absolute value of the components.
 #[inline(always)]
 pub(crate) fn largest(v: DVec3) -> f64 {
+    // `>`, which is one instruction, where `>=` is two.
     let v = v.abs();
-    let m = if v.x >= v.y { v.x } else { v.y };
-    if m >= v.z { m } else { v.z }
+    let m = if v.x > v.y { v.x } else { v.y };
+    if m > v.z { m } else { v.z }
 }
 
 /// Lengths and coordinates up to this are accepted: the promised 1e150 and a margin.

@@ -35,9 +35,11 @@ pub(super) struct Frame {
 pub(super) struct LocalRay {
     /// The start, known within `error` in each coordinate.
     pub origin: DVec3,
-    pub error: DVec3,
+    pub error: f64,
     /// Exact, the largest coordinate in [1, 2).
     pub direction: DVec3,
+    /// One by each coordinate of it, within a rounding; infinite where that is beyond the range.
+    pub inverse: DVec3,
     factor: f64,
     shift: f64,
 }
@@ -100,7 +102,7 @@ impl Windows {
     pub fn of_four<L: Lanes>(&self, largest: Four<L>) -> [Window; 4] {
         let zero = largest.all(0.0);
         let Some(far) = self.far else { return [Window { absolute: 0.0 }; 4] };
-        let (least, most) = (zero.all(exp2i(-1000)), zero.all(exp2i(1000)));
+        let (least, most) = (zero.all(exp2i(-MIDDLING)), zero.all(exp2i(MIDDLING)));
         // Powers of two: all of this is exact. What is not middling is left out at the end.
         let binade = largest.binade();
         let power = zero.all(exp2i(self.exponent)) / binade;
@@ -112,10 +114,13 @@ impl Windows {
     }
 }
 
-/// Whether two to this power, and to its opposite, are far from the limits of `f64`.
+/// Two to this power, and to its opposite, are far from the limits of `f64`: one by a number 2^-100 times as large has a place.
+const MIDDLING: i32 = 900;
+
+/// Whether two to this power is.
 #[inline(always)]
 fn is_middling(power: i32) -> bool {
-    (-1000..=1000).contains(&power)
+    (-MIDDLING..=MIDDLING).contains(&power)
 }
 
 /// Whether box tests can hold this: finite, in order, and far from the limits of `f64`.
@@ -177,15 +182,17 @@ impl Frame {
         if !self.inhabited {
             return (None, Window { absolute: 0.0 });
         }
+        // First, as nothing that follows takes as long.
+        let inverse = 1.0 / ray.direction;
         let direction_exponent = exponent(largest(ray.direction));
         let power = direction_exponent - self.exponent;
         // Not for directions that are not normal numbers or whose reciprocal is none, nor for parameters that would overflow.
         if !(is_middling(direction_exponent) && is_middling(power)) {
             return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
         }
-        let scale = exp2i(-self.exponent);
-        let origin = (ray.origin - self.center) * scale;
+        let origin = (ray.origin - self.center) * exp2i(-self.exponent);
         let direction = ray.direction * exp2i(-direction_exponent);
+        let inverse = inverse * exp2i(direction_exponent);
         let factor = exp2i(power);
         let far = largest(origin);
         if !(far < FARTHEST) {
@@ -193,7 +200,12 @@ impl Frame {
         }
         let absolute = (far + 1.0) * WINDOW;
         let window = Window { absolute: absolute * exp2i(-power) };
-        // A raw `t` may exceed the interval's end by its error where the true one does not.
+        // A raw `t` may exceed the interval's end by its error where the true one does not: the ray begins before it.
+        if within.min == 0.0 && far <= 8.0 {
+            // By `absolute`, which is less than 2 `absolute` in a coordinate: the error takes it. The origin itself is rounded twice.
+            let error = absolute * 2.0 + exp2i(-48);
+            return (Some(LocalRay { origin, error, direction, inverse, factor, shift: absolute }), window);
+        }
         let mut start = within.min * factor - absolute;
         if !(start.abs() * 2.0 + far <= 8.0) {
             // Begin where the ray enters the box of the scene, which is [-1, 1] with room for all roundings: the
@@ -215,11 +227,12 @@ impl Frame {
                 return (None, window);
             }
         }
-        let run = direction * start;
+        // Each coordinate runs by less than 2 |start|.
         let local = LocalRay {
-            origin: origin + run,
-            error: (origin.abs() + run.abs()) * (8.0 * U) + exp2i(-97),
+            origin: origin + direction * start,
+            error: (far + 2.0 * start.abs()) * (8.0 * U) + exp2i(-97),
             direction,
+            inverse,
             factor,
             shift: absolute - start,
         };
@@ -272,7 +285,7 @@ impl Side {
         self.limit[group][lane] = ray.limit(end);
         self.factor[place % PACKET] = ray.factor;
         self.shift[place % PACKET] = ray.shift;
-        let error = ray.error.x + ray.error.y + ray.error.z;
+        let error = 3.0 * ray.error;
         self.error = if error > self.error { error } else { self.error };
     }
 
@@ -317,7 +330,7 @@ impl Frame {
         }
         let center = [self.center.x, self.center.y, self.center.z];
         let scale = lanes.splat4(exp2i(-self.exponent));
-        let (small, large) = (lanes.splat4(exp2i(-1000)), lanes.splat4(exp2i(1000)));
+        let (small, large) = (lanes.splat4(exp2i(-MIDDLING)), lanes.splat4(exp2i(MIDDLING)));
         let (zero, one, unit) = (lanes.splat4(0.0), lanes.splat4(1.0), lanes.splat4(WINDOW));
         let mut fine = 15;
         for four in 0..PACKET / 4 {
@@ -389,8 +402,9 @@ impl LocalRay {
     /// Stands for a ray that kernel coordinates cannot hold: it meets every box, as all are within 1 of zero.
     pub const EVERYWHERE: LocalRay = LocalRay {
         origin: DVec3::ZERO,
-        error: DVec3::splat(exp2i(100)),
+        error: exp2i(100),
         direction: DVec3::ONE,
+        inverse: DVec3::ONE,
         factor: 1.0,
         shift: f64::INFINITY,
     };
@@ -417,16 +431,16 @@ mod tests {
     fn directions_of_extreme_length() {
         for (size, speed, followed) in [
             (1.0, 1.0, true),
-            (1.0, exp2i(1000), true),
-            (1.0, exp2i(1001), false),
+            (1.0, exp2i(900), true),
+            (1.0, exp2i(901), false),
             (1.0, exp2i(1023), false),
             (1e100, exp2i(1023) * 1.5, false),
-            (1.0, exp2i(-1000), false),
-            (exp2i(-10), exp2i(-1000), true),
-            (exp2i(-10), exp2i(-1001), false),
+            (1.0, exp2i(-900), false),
+            (exp2i(-10), exp2i(-900), true),
+            (exp2i(-10), exp2i(-901), false),
             (exp2i(-10), f64::from_bits(1), false),
-            (exp2i(-300), exp2i(710), false),
-            (exp2i(300), exp2i(-710), false),
+            (exp2i(-300), exp2i(610), false),
+            (exp2i(300), exp2i(-610), false),
         ] {
             let bounds = Aabb::new(DVec3::splat(-size), DVec3::splat(size));
             let frame = Frame::around(1, [Some(bounds)].into_iter());
@@ -440,6 +454,7 @@ mod tests {
             let four = frame.windows(ray.origin).of_four(largest).map(|window| window.absolute);
             assert_eq!((four[1], four[2], four[3]), (window.absolute, 0.0, window.absolute));
             assert!(!followed || local.direction == DVec3::new(0.0, 0.25, 1.0));
+            assert!(!followed || local.inverse == DVec3::new(f64::INFINITY, 4.0, 1.0));
         }
     }
 
@@ -447,20 +462,20 @@ mod tests {
     #[test]
     fn a_packet_keeps_its_rays() {
         let mut side = Side::EMPTY;
-        let of = |i: usize, error: DVec3| LocalRay {
+        let of = |i: usize, error: f64| LocalRay {
             origin: DVec3::new(0.5, -0.25, 0.125) * (1 + i) as f64,
             error,
             direction: DVec3::new(1.0, -0.5, 1.5) / (1 + i) as f64,
+            inverse: DVec3::new(1.0, -2.0, 0.5) * (1 + i) as f64,
             factor: (2 + i) as f64,
             shift: 0.25 * i as f64,
         };
         for i in 0..PACKET {
-            let error = DVec3::AXES[i % 3] * if i == 9 { 3e-5 } else { 1e-7 } + DVec3::splat(1e-5);
-            side.set(i, &of(i, error), i as f64);
+            side.set(i, &of(i, if i == 9 { 2e-5 } else { 1e-7 }), i as f64);
         }
         assert!((side.error - 6e-5).abs() < 1e-15, "{}", side.error);
         for i in 0..PACKET {
-            let ray = of(i, DVec3::ZERO);
+            let ray = of(i, 0.0);
             for k in 0..3 {
                 assert_eq!(side.origin[i / 8][k][i % 8], ray.origin[k] as f32);
                 assert_eq!(side.direction[i / 8][k][i % 8], ray.direction[k] as f32);
@@ -471,8 +486,8 @@ mod tests {
             assert!((true_end..true_end * (1.0 + 1e-6)).contains(&f64::from(ray.limit(0.75))));
         }
         side.cut(11, 0.5);
-        assert_eq!(side.limit[1][3], of(11, DVec3::ZERO).limit(0.5));
-        assert_eq!(side.limit[1][4], of(12, DVec3::ZERO).limit(12.0));
+        assert_eq!(side.limit[1][3], of(11, 0.0).limit(0.5));
+        assert_eq!(side.limit[1][4], of(12, 0.0).limit(12.0));
         side.repeat(30, 11);
         for k in 0..3 {
             assert_eq!(side.origin[3][k][6], side.origin[1][k][3]);
@@ -516,7 +531,9 @@ mod tests {
                 origin
             };
             let ray = Ray::new(origin, direction);
-            let (local, window) = frame.enter(&ray, Interval::FORWARD);
+            // From zero, and from elsewhere.
+            let least = if case % 2 == 0 { 0.0 } else { f64::MIN_POSITIVE };
+            let (local, window) = frame.enter(&ray, Interval::new(least, f64::INFINITY));
             if beyond > 1.0 + exp2i(-9) {
                 none += u32::from(local.is_none());
                 continue;
@@ -526,10 +543,19 @@ mod tests {
             let far = largest(origin - center) / unit;
             let t = (target - origin).dot(direction) / direction.length_squared();
             // The parameter of the target, in kernel coordinates from where the ray begins.
-            let along = t * local.factor + local.shift - (far + 1.0) * WINDOW;
+            let absolute = (far + 1.0) * WINDOW;
+            let along = t * local.factor + local.shift - absolute;
             let off = local.origin + local.direction * along - (target - center) / unit;
-            assert!(largest(off) <= largest(local.error) + exp2i(-49) * far, "{off} {ray:?}");
-            assert!(largest(local.error) <= exp2i(-48) * (far + 1.0));
+            assert!(largest(off) <= local.error + exp2i(-49) * far, "{off} {ray:?}");
+            // It may also begin earlier by what a parameter may err.
+            let at_zero = local.shift == absolute;
+            assert_eq!(at_zero, least == 0.0 && far <= 8.0, "{ray:?}");
+            assert!(local.error >= if at_zero { 2.0 * absolute } else { 0.0 });
+            assert!(local.error <= if at_zero { 2.1 * absolute } else { exp2i(-47) * (far + 1.0) });
+            for k in 0..3 {
+                let product = local.inverse[k] * local.direction[k];
+                assert!((product - 1.0).abs() < 1e-15 || local.direction[k] == 0.0);
+            }
             let limit = f64::from(local.limit(t));
             assert!(limit >= 0.0 && limit - along <= 4.0 * (far + 1.0) * WINDOW + exp2i(-20) * along.abs());
             // Begun in the box: nowhere else than where it enters, if it does not start inside.

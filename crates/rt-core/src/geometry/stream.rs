@@ -27,7 +27,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
         Flight {
             ray,
             number,
-            slab: SlabRay::new(lanes, local.origin, local.error, local.direction),
+            slab: SlabRay::new(lanes, local.origin, local.error, local.inverse),
             limit: local.limit(query.limit()),
             local,
             query,

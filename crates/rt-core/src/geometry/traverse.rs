@@ -84,7 +84,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     local: &LocalRay,
     query: &mut Q,
 ) -> ControlFlow<()> {
-    let slab = SlabRay::new(lanes, local.origin, local.error, local.direction);
+    let slab = SlabRay::new(lanes, local.origin, local.error, local.inverse);
     let mut end = query.limit();
     let mut limit = local.limit(end);
     let mut room = Room::<STACK>::default();

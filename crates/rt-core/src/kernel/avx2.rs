@@ -46,7 +46,6 @@ const PACKED: [[i32; 8]; 16] = {
 impl Lanes for Avx2Lanes {
     type F = __m256;
     type D = __m256d;
-    const FUSED: bool = true;
     #[inline(always)]
     fn splat(self, x: f32) -> __m256 {
         // SAFETY: `self` proves AVX2.
@@ -237,6 +236,11 @@ impl Lanes for Avx2Lanes {
     fn max4(self, a: __m256d, b: __m256d) -> __m256d {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_max_pd(a, b) }
+    }
+    #[inline(always)]
+    fn min4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_min_pd(a, b) }
     }
     #[inline(always)]
     fn abs4(self, a: __m256d) -> __m256d {

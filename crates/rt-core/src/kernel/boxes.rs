@@ -4,21 +4,22 @@
 //! rays. A box test may only cull: it never rejects a box that the exact ray passes through.
 //!
 //! Per axis, the parameters at which the ray enters and leaves the slab are `(x - o) / d`. The origin is known as
-//! `o +- e` with `e >= 2^-97`, the direction `d` is exact, `max |d_i|` lies in [1, 2). In `f32`, with v = 2^-24:
-//! - The reciprocal is rounded to `f32` after it was made smaller (entry) or larger (exit) in magnitude by the factor
-//!   1 -+ 2^-22 = 1 -+ 4 v. That outweighs its own rounding, and those of the difference and of the product, 3 v
-//!   together. It works in the wrong direction only where the parameter is negative, hence behind the start: there
+//! `o +- e` with `e >= 2^-97`, `max |d_i|` lies in [1, 2), and `1 / d` is known within a rounding of `f64`. In `f32`, with
+//! v = 2^-24, the test is `x * r + c`:
+//! - The reciprocal `r` is rounded to `f32` after it was made smaller (entry) or larger (exit) in magnitude by the factor
+//!   1 -+ 2^-22 = 1 -+ 4 v. That works in the wrong direction only where the parameter is negative, hence behind the start: there
 //!   the entry counts as 0 anyway, and an exit keeps its sign.
-//! - The origin is moved outward by `e + 4 v (|o| + e)`, to `o'`. Without fused multiply-add the test is `(x - o') * r`
-//!   with `o'` rounded to nearest. With, it is `x * r + c`, where `c = -o' * r` is made of the reciprocal before it was
-//!   rounded, and rounded itself: by both, 2 v `|o' r|` at most, half of the step outward. The sum is rounded once. What
-//!   is lost in `f64` is far less.
+//! - The origin is moved outward by `e + 4 v (|o| + e)`, to `o'`, and `c = -o' * r` is made of the reciprocal before it was
+//!   rounded, and rounded itself.
+//! - The roundings of `r` and, without fused multiply-add, of the product err by v each of `|x r|`, at most `|(x - o') r| + |o' r|`,
+//!   that of `c` by v of `|o' r|`, that of the sum by v of itself: altogether by 3 v of the parameter, which the factor 1 -+ 4 v
+//!   outweighs, and 3 v `|o' r|`, which the step outward does. What is lost in `f64` is far less.
 //! - Results below the normal range err by 2^-150 at most, far less than `e * |r| >= 2^-98` moved them.
-//! - An axis with `|d_i| < 2^-100` is treated as `2^-100`. Within the scene a parameter is at most about 2, so this
-//!   moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if `o +- e` lies
-//!   outside, else its exit is at least `2^-98 * 2^100 = 4`, beyond the scene.
-//! - Hence, with fused multiply-add, a positive entry is less than the true one (by v of itself or more), and an exit that
-//!   is truly at least 0 is positive and greater than the true one: where the true ones are in order, these are not equal.
+//! - An axis with `|d_i| < 2^-100` is treated as `2^-100`: no reciprocal is more than 2^100. Within the scene a parameter is at
+//!   most about 2, so this moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if
+//!   `o +- e` lies outside, else its exit is at least `2^-98 * 2^100 = 4`, beyond the scene.
+//! - Hence a positive entry is less than the true one (by v of itself or nearly so), and an exit that is truly at least 0 is
+//!   positive and greater than the true one: where the true ones are in order, these are not equal.
 //! - There is no NaN: origins (at most about 8, see `geometry::frame`), `r` (at most 2^100) and their products are finite,
 //!   and no `r` is 0. Rays that nothing is known of have a large error, not an infinite one. Empty boxes are infinite, and
 //!   so are their entries.
@@ -87,6 +88,13 @@ impl Row {
     pub const fn max(axis: usize) -> Row {
         Row((axis % 3 + 3) * size_of::<[f32; 8]>())
     }
+
+    /// Both, the first that a ray meets first: `back` is 1 for one that goes back along the axis, else 0.
+    #[inline(always)]
+    const fn ends(axis: usize, back: u32) -> (Row, Row) {
+        let step = (back & 1) as usize * (3 * size_of::<[f32; 8]>());
+        (Row(Row::min(axis).0 + step), Row(Row::max(axis).0 - step))
+    }
 }
 
 /// The greatest `f32` that is at most `x`.
@@ -126,64 +134,59 @@ pub struct SlabRay<L: Lanes> {
     far_offset: [L::F; 3],
 }
 
-/// What a [`SlabRay`] knows of an axis: its rows of least and greatest coordinates on the way, and factor and offset for each.
-#[inline(always)]
-fn axis<L: Lanes>(i: usize, o: f64, e: f64, d: f64) -> (Row, Row, f32, f32, f32, f32) {
-    const LEAST: f64 = crate::math::exp2i(-100);
-    const SLACK: f64 = crate::math::exp2i(-22);
-    // Forward, the origin counts as further on for the entry and as further back for the exit.
-    let outward = (e + (o.abs() + e) * TWO_STEPS).copysign(d);
-    let (first, last) = (-(o + outward), outward - o);
-    let d = (if d.abs() < LEAST { LEAST } else { d.abs() }).copysign(d);
-    let inverse = 1.0 / d;
-    let (near, far) = ((inverse * (1.0 - SLACK)) as f32, (inverse * (1.0 + SLACK)) as f32);
-    let (near_offset, far_offset) = if L::FUSED {
-        // Nothing waits for the division but one product.
-        (first * (1.0 - SLACK) * inverse, last * (1.0 + SLACK) * inverse)
-    } else {
-        (first, last)
-    };
-    let (near_row, far_row) = if d > 0.0 { (Row::min(i), Row::max(i)) } else { (Row::max(i), Row::min(i)) };
-    (near_row, far_row, near, near_offset as f32, far, far_offset as f32)
-}
-
 impl<L: Lanes> SlabRay<L> {
-    /// The ray that starts within `error` of `origin`.
+    /// The ray that starts within `error` of `origin`, by one over its direction.
     ///
-    /// Without branches: rounded to nearest after a step outward of 2^-22, twice what that can lose.
+    /// The axes in lanes, without branches: rounded to nearest after a step outward of 2^-22, twice what that can lose.
     #[inline(always)]
-    pub fn new(lanes: L, origin: DVec3, error: DVec3, direction: DVec3) -> Self {
-        let (o, e) = (origin, error);
+    pub fn new(lanes: L, origin: DVec3, error: f64, inverse: DVec3) -> Self {
+        const MOST: f64 = crate::math::exp2i(100);
+        const SLACK: f64 = crate::math::exp2i(-22);
+        let origin = lanes.load4([origin.x, origin.y, origin.z, 0.0]);
+        let inverse = lanes.load4([inverse.x, inverse.y, inverse.z, 1.0]);
+        let inverse = lanes.max4(lanes.min4(inverse, lanes.splat4(MOST)), lanes.splat4(-MOST));
+        let back = lanes.lt4(inverse, lanes.splat4(0.0));
+        let error = lanes.splat4(error + error * TWO_STEPS);
+        let outward = lanes.add4(lanes.mul4(lanes.abs4(origin), lanes.splat4(TWO_STEPS)), error);
+        // Parameters at which the origin's coordinates, and the steps outward, are zero: of the entry further on, of the exit
+        // further back.
+        let (zero, outward) = (lanes.mul4(origin, inverse), lanes.mul4(outward, lanes.abs4(inverse)));
+        let (less, more) = (lanes.splat4(1.0 - SLACK), lanes.splat4(1.0 + SLACK));
+        let near = lanes.round4(lanes.mul4(inverse, less));
+        let far = lanes.round4(lanes.mul4(inverse, more));
+        let near_offset = lanes.round4(lanes.mul4(lanes.add4(zero, outward), lanes.splat4(SLACK - 1.0)));
+        let far_offset = lanes.round4(lanes.mul4(lanes.sub4(outward, zero), more));
+        let (x, y, z) = (Row::ends(0, back & 1), Row::ends(1, back >> 1 & 1), Row::ends(2, back >> 2 & 1));
         // No closure makes a register, or anything: one that is not inlined is compiled without the instruction set.
-        let x = axis::<L>(0, o.x, e.x, direction.x);
-        let y = axis::<L>(1, o.y, e.y, direction.y);
-        let z = axis::<L>(2, o.z, e.z, direction.z);
         SlabRay {
             near: [x.0, y.0, z.0],
             far: [x.1, y.1, z.1],
-            near_factor: [lanes.splat(x.2), lanes.splat(y.2), lanes.splat(z.2)],
-            near_offset: [lanes.splat(x.3), lanes.splat(y.3), lanes.splat(z.3)],
-            far_factor: [lanes.splat(x.4), lanes.splat(y.4), lanes.splat(z.4)],
-            far_offset: [lanes.splat(x.5), lanes.splat(y.5), lanes.splat(z.5)],
+            near_factor: [lanes.splat(near[0]), lanes.splat(near[1]), lanes.splat(near[2])],
+            near_offset: [
+                lanes.splat(near_offset[0]),
+                lanes.splat(near_offset[1]),
+                lanes.splat(near_offset[2]),
+            ],
+            far_factor: [lanes.splat(far[0]), lanes.splat(far[1]), lanes.splat(far[2])],
+            far_offset: [lanes.splat(far_offset[0]), lanes.splat(far_offset[1]), lanes.splat(far_offset[2])],
         }
     }
 
     /// Where the ray enters and leaves the slabs of the boxes on an axis. Not a closure: see [`new`](SlabRay::new).
     #[inline(always)]
     fn slab(&self, lanes: L, boxes: &Boxes, axis: usize) -> (L::F, L::F) {
-        let near = lanes.load(boxes.row(self.near[axis]));
-        let far = lanes.load(boxes.row(self.far[axis]));
-        if L::FUSED {
-            (
-                lanes.mul_add(near, self.near_factor[axis], self.near_offset[axis]),
-                lanes.mul_add(far, self.far_factor[axis], self.far_offset[axis]),
-            )
-        } else {
-            (
-                lanes.mul(lanes.add(near, self.near_offset[axis]), self.near_factor[axis]),
-                lanes.mul(lanes.add(far, self.far_offset[axis]), self.far_factor[axis]),
-            )
-        }
+        (
+            lanes.mul_add(
+                lanes.load(boxes.row(self.near[axis])),
+                self.near_factor[axis],
+                self.near_offset[axis],
+            ),
+            lanes.mul_add(
+                lanes.load(boxes.row(self.far[axis])),
+                self.far_factor[axis],
+                self.far_offset[axis],
+            ),
+        )
     }
 
     /// The boxes that the ray may meet between 0 and `limit`, one bit each, and where it enters them (at least +0).

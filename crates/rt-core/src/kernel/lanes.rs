@@ -11,8 +11,6 @@ use crate::math::sqrt;
 pub trait Lanes: Copy {
     /// Eight lanes.
     type F: Copy;
-    /// Whether [`mul_add`](Lanes::mul_add) rounds once.
-    const FUSED: bool;
     /// The same value in all lanes.
     fn splat(self, x: f32) -> Self::F;
     /// The lanes of an array.
@@ -25,7 +23,7 @@ pub trait Lanes: Copy {
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     /// `a * b`.
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `a * b + c`, rounded once if [`FUSED`](Lanes::FUSED), otherwise twice.
+    /// `a * b + c`, rounded once or twice.
     fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     /// `if a > b { a } else { b }`: `b` when either is NaN.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
@@ -84,6 +82,8 @@ pub trait Lanes: Copy {
     fn abs4(self, a: Self::D) -> Self::D;
     /// `if a > b { a } else { b }`: `b` when either is NaN.
     fn max4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// `if a < b { a } else { b }`: `b` when either is NaN.
+    fn min4(self, a: Self::D, b: Self::D) -> Self::D;
     /// The power of two with the exponent of `a`, which is positive: 0 for subnormal numbers, infinite for NaN.
     fn binade4(self, a: Self::D) -> Self::D;
     /// The lanes without their fractions; any numbers for those that are NaN or not in `0..2^31`.
@@ -133,7 +133,6 @@ fn each4(a: [f64; 4], b: [f64; 4], f: impl Fn(f64, f64) -> f64) -> [f64; 4] {
 impl Lanes for PortableLanes {
     type F = [f32; 8];
     type D = [f64; 4];
-    const FUSED: bool = false;
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
         [x; 8]
@@ -265,6 +264,10 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn max4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
         each4(a, b, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn min4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, |a, b| if a < b { a } else { b })
     }
     #[inline(always)]
     fn binade4(self, a: [f64; 4]) -> [f64; 4] {
