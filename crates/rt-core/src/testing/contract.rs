@@ -1,7 +1,7 @@
 //! What every shape owes its callers, checked with hard rays.
 
 use super::HardRays;
-use crate::{Hit, Interval, Primitive, Ray, Side, Surface};
+use crate::{Departure, Hit, Interval, Primitive, Ray, Side, Surface};
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -310,20 +310,52 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Whether what was met on the way back is an edge that the ray passed so closely on its way there that rounding
-    /// decides: then a ray along the same line meets it when moved by some error radii. It begins as far beyond the edge
-    /// as the start is on this side: where the ray itself began, such a move may be nothing. The start's own
-    /// surroundings are no edge.
-    fn at_an_edge(&self, start: &Surface, met: &Surface) -> bool {
-        let way = start.point - met.point;
-        let radius = start.error + met.error + 2.0 * U * way.abs().element_sum();
-        let apart = |a: DVec3, b: DVec3| (a - b).length() > 1024.0 * radius;
-        apart(start.point, met.point)
-            && [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]).any(|aside| {
-                let moved = Ray::new(met.point - way + aside * (8.0 * radius), way);
-                let first = self.shape.hit(&moved, Interval::FORWARD);
-                first.is_some_and(|hit| !apart(self.shape.surface(&moved, hit).point, met.point))
-            })
+    /// Whether rounding decides that something is met on the way back: what the first ray began at, a wall thinner than its
+    /// places are known, an edge, or a bulge that the ray grazes.
+    ///
+    /// The first ray met nothing there. Its line and the way back are nowhere further apart than two error radii: the
+    /// recorded point lies within one of its line, and the way back begins within one of that point, in the direction to the
+    /// first ray's origin. What the way back meets and the first ray did not is hence nearer than that to either line,
+    /// whatever the angle it is met at.
+    ///
+    /// Either the first ray began at it, then the origin lies so near to the tangent plane of the place. Or some rays
+    /// beside the way back meet it and some do not: those moved by 4 radii along the axes, as one of the six is
+    /// within an angle of cosine 1 / sqrt(3) of each direction. They are asked from half of the way to the place onward; where
+    /// that is no higher above the tangent plane of the start than they were moved, they may meet the start's own
+    /// surroundings, and tell nothing. Nor do they tell where two sheets meet at a point, through which the first ray passed both
+    /// and counted neither, while all rays beside it cross the wall between them: the way back is out of it again sooner
+    /// than they were moved.
+    fn is_decided_by_rounding(
+        &self,
+        (ray, start): (&Ray, &Surface),
+        (shadow, within, from): (&Ray, Interval, &Departure),
+        (met, place): (Hit, &Surface),
+    ) -> bool {
+        let way = place.point - start.point;
+        let radius = start.error + place.error + 2.0 * U * way.abs().element_sum();
+        if (ray.origin - place.point).dot(place.normal).abs() <= 2.0 * radius {
+            return true;
+        }
+        let mut next = None;
+        let is_other = |hit: &Hit| (hit.part(), hit.root()) != (met.part(), met.root());
+        self.shape.crossings_leaving(shadow, within, from, &mut |hit| {
+            next = next.or(Some(hit).filter(is_other));
+        });
+        let moved = 4.0 * radius;
+        if next.is_some_and(|next| (self.shape.surface(shadow, next).point - place.point).length() <= moved) {
+            return true;
+        }
+        if 0.5 * way.dot(start.normal).abs() <= moved {
+            return false;
+        }
+        let within = within.after(0.5 * met.t());
+        let meets = |aside: &DVec3| {
+            let beside = Ray::new(shadow.origin + *aside * moved, shadow.direction);
+            self.shape.hit(&beside, within).is_some()
+        };
+        let sides = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let count = sides.filter(meets).count();
+        (1..6).contains(&count)
     }
 
     /// What the eye sees, the eye's lamp sees.
@@ -346,25 +378,153 @@ impl Check<'_> {
         let (shadow, within) = from.ray(back);
         // The last part of the way belongs to what the first ray's origin itself may lie on.
         let within = within.until(1.0 - 1e-3);
-        let grazed = |met: Hit| self.shape.surface(&shadow, met).normal.dot(direction).abs() < 1e-3;
-        let shadow_length = |met: Hit| (self.shape.surface(&shadow, met).point - surface.point).length();
-        match self.shape.hit_leaving(&shadow, within, &from) {
-            // Another part begins where the ray left: it left an edge, and rounding says on which side of it.
-            Some(met)
-                if met.part() != hit.part()
-                    && shadow_length(met)
-                        <= 8.0 * (surface.error + self.shape.surface(&shadow, met).error) =>
-            {
-                Ok(())
+        let Some(met) = self.shape.hit_leaving(&shadow, within, &from) else { return Ok(()) };
+        let place = self.shape.surface(&shadow, met);
+        // Another part begins where the ray left: it left an edge, and rounding says on which side of it.
+        let is_at_start = (place.point - surface.point).length() <= 8.0 * (surface.error + place.error);
+        let is_other_part = met.part() != hit.part() && is_at_start;
+        if is_other_part
+            || self.is_decided_by_rounding((ray, surface), (&shadow, within, &from), (met, &place))
+        {
+            return Ok(());
+        }
+        Err(Failure {
+            promise: "nothing lies on the way back from the first hit",
+            ray: shadow,
+            within,
+            found: format!("{met:?} after {hit:?}"),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Aabb;
+    use crate::shape::{Sphere, Torus};
+
+    fn check(shape: &dyn Primitive, ray: &Ray) -> Result<Option<Surface>, Failure> {
+        Check { shape, closed: true }.ray(ray, 0.5)
+    }
+
+    /// The point that was hit, and what the way back from it meets, as `way_back` asks.
+    fn returned(shape: &dyn Primitive, ray: &Ray) -> (Surface, Option<Surface>) {
+        let hit = shape.hit(ray, Interval::FORWARD).unwrap();
+        let surface = shape.surface(ray, hit);
+        let from = surface.departure(0, hit, Side::of_arrival(ray.direction, surface.normal));
+        let (shadow, within) = from.ray(ray.origin - surface.point);
+        let met = shape.hit_leaving(&shadow, within.until(1.0 - 1e-3), &from);
+        (surface, met.map(|met| shape.surface(&shadow, met)))
+    }
+
+    /// A hole of 1e-4 of the tube, passed inside the tube, so far from the world's origin that a point is known to
+    /// 7e-8: the way back meets the hole, and not at a grazing angle.
+    #[test]
+    fn a_narrow_hole_passed_within_rounding() {
+        let center = [-469762048.0, -268610903.9989902, -8388608.0];
+        let axis = [-1161.4721440789365, 268435456.0, 15805.740879193474];
+        let torus = Torus::new(center, axis, 32.0052586984425, 32.0000000221345).unwrap();
+        let ray = Ray::new(
+            [-469762049.2158912, -268610901.408413, -8388601.201758277],
+            [0.16557638889419957, -0.3507541098681875, -0.9217136289956095],
+        );
+        let (surface, met) = returned(&torus, &ray);
+        let met = met.unwrap();
+        let direction = ray.direction.normalize();
+        assert!(surface.normal.dot(direction) > 0.1 && (surface.point - met.point).length() > 30.0);
+        assert!(met.normal.dot(direction).abs() > 1e-3 && met.error < 1e-7, "{met:?}");
+        assert!(check(&torus, &ray).unwrap().is_some());
+    }
+
+    /// Where the two sheets of a spindle meet, a first ray passes both and counts neither; the way back crosses the wall
+    /// between them, as do all rays beside it.
+    #[test]
+    fn a_pole_passed_within_rounding() {
+        let center = [-1.9533475925234192e-103, -2.337040869691205e-103, -3.488120700941022e-105];
+        let torus = Torus::new(center, DVec3::NEG_X, 1.330612450002561e-110, 4.77995646170444e-103).unwrap();
+        let ray = Ray::new(
+            [-9.377234153312557e-102, 1.8344985034600482e-102, 1.0358524637012893e-102],
+            [8.70390374788977e-102, -2.0682025904291687e-102, -1.0393405844022303e-102],
+        );
+        let (surface, met) = returned(&torus, &ray);
+        assert!((surface.point - met.unwrap().point).length() > 8e-103, "{surface:?} {met:?}");
+        assert!(check(&torus, &ray).unwrap().is_some());
+    }
+
+    /// Two spheres, of which a first ray misses the nearer one when told so.
+    #[derive(Debug)]
+    struct Screened {
+        near: Sphere,
+        far: Sphere,
+        /// Rays that start further away than this miss the near one,
+        reach: f64,
+        /// and so do those that meet it at a smaller cosine.
+        cosine: f64,
+    }
+
+    impl Screened {
+        fn is_missed(&self, ray: &Ray, hit: Hit) -> bool {
+            let normal = self.near.surface(ray, hit).normal;
+            let cosine = normal.dot(ray.direction.normalize()).abs();
+            (ray.origin - self.near.center()).length() > self.reach || cosine < self.cosine
+        }
+
+        fn nearer(near: Option<Hit>, far: Option<Hit>) -> Option<Hit> {
+            let near = near.and_then(|hit| Interval::LINE.admit(hit.t(), 1, hit.root()));
+            near.filter(|near| far.is_none_or(|far| near.t() < far.t())).or(far)
+        }
+    }
+
+    impl Primitive for Screened {
+        fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+            let near = self.near.hit(ray, within).filter(|hit| !self.is_missed(ray, *hit));
+            Screened::nearer(near, self.far.hit(ray, within))
+        }
+
+        fn surface(&self, ray: &Ray, hit: Hit) -> Surface {
+            let sphere = if hit.part() == 1 { self.near } else { self.far };
+            Interval::LINE.admit(hit.t(), 0, hit.root()).map(|hit| sphere.surface(ray, hit)).unwrap()
+        }
+
+        fn bounds(&self) -> Option<Aabb> {
+            let (a, b) = (self.near.bounds()?, self.far.bounds()?);
+            Some(Aabb::new(a.min.min(b.min), a.max.max(b.max)))
+        }
+
+        fn hit_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Hit> {
+            let hit_or_leave = |sphere: &Sphere, part: u32| {
+                if from.part == part {
+                    sphere.hit_leaving(ray, within, from)
+                } else {
+                    sphere.hit(ray, within)
+                }
+            };
+            Screened::nearer(hit_or_leave(&self.near, 1), hit_or_leave(&self.far, 0))
+        }
+    }
+
+    /// What reaches into the way back deeper than the error radius is found, by however little the first ray should have
+    /// met it, whether only rays from far away miss it or all rays that graze it, or all.
+    #[test]
+    fn what_lies_on_the_way_back_is_found() {
+        let far = Sphere::new(DVec3::ZERO, 2.0).unwrap();
+        let ray = Ray::new([0.5, 0.0, 100.0], DVec3::NEG_Z);
+        for depth in [0.4, 1e-3, 1e-9, 1e-13] {
+            let near = Sphere::new([depth - 0.5, 0.0, 4.0], 1.0).unwrap();
+            let sound = Screened { near, far, reach: f64::INFINITY, cosine: 0.0 };
+            let surface = check(&sound, &ray).unwrap().unwrap();
+            assert!(surface.point.z > 3.5, "{surface:?}");
+            for (reach, cosine) in [(50.0, 0.0), (f64::INFINITY, 0.9), (0.0, 0.0)] {
+                let shape = Screened { reach, cosine, ..sound };
+                let (surface, met) = returned(&shape, &ray);
+                assert!(surface.point.z < 2.0 && met.unwrap().point.z > 2.9, "{surface:?} {met:?}");
+                let failure = check(&shape, &ray).unwrap_err();
+                assert!(failure.promise.starts_with("nothing lies on the way back"), "{failure}");
             }
-            Some(met) if grazed(met) || self.at_an_edge(surface, &self.shape.surface(&shadow, met)) => Ok(()),
-            Some(met) => Err(Failure {
-                promise: "nothing lies on the way back from the first hit",
-                ray: shadow,
-                within,
-                found: format!("{met:?} after {hit:?}"),
-            }),
-            None => Ok(()),
+            // Past it by as much.
+            let near = Sphere::new([-depth - 0.5, 0.0, 4.0], 1.0).unwrap();
+            let surface = check(&Screened { near, ..sound }, &ray).unwrap().unwrap();
+            assert!(surface.point.z < 2.0, "{surface:?}");
         }
     }
 }
