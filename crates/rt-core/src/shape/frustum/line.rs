@@ -117,11 +117,12 @@ impl Frustum {
         let mut t = -(away.dot(across) / across.dot(across));
         let (base, top) = (-(z / z_growth), (self.height.high - z) / z_growth);
         let (first, last) = if base < top { (base, top) } else { (top, base) };
-        // NaN (no motion across, or along the axis) fails every comparison.
+        // Without motion along the axis the planes are nowhere: infinite, or NaN where the line lies in one of them. NaN, also
+        // for no motion across, fails every comparison.
         if !(t > first) && first.is_finite() {
             t = first;
         }
-        if t > last {
+        if t > last && last.is_finite() {
             t = last;
         }
         if t.is_finite() { t } else { 0.0 }

@@ -232,3 +232,29 @@ fn next_to_the_apex() {
     }
     assert!(count > 3000, "{count}");
 }
+
+/// A line in the very plane of a cap is moved next to the axis before its crossings are taken, from however far it comes.
+#[test]
+fn in_the_plane_of_a_cap() {
+    let mut random = Random::new(11);
+    let mut exactly = 0;
+    for case in 0..2000 {
+        let radius = random.uniform(0.1, 1.0);
+        let base = DVec3::new(0.0, random.uniform(0.5, 2.0), random.uniform(-1.0, 1.0) * 0.01);
+        let [base, top] = if case % 2 == 0 { [base, DVec3::ZERO] } else { [DVec3::ZERO, base] };
+        let radii = [radius, if case % 4 < 2 { radius } else { 0.5 * radius }];
+        let f = Frustum::new(base, radii, top, ["a", "b"], case % 8 < 4).unwrap();
+        let radius = if case % 2 == 0 { radii[1] } else { radii[0] };
+        let ray = Ray::new([random.magnitude(8.0, 50.0) * random.sign(), 0.0, 0.0], [0.25, 0.0, 0.0]);
+        let axis = f.axis.high();
+        exactly += u32::from(axis.dot(ray.origin - base) == f.numbers.height);
+        for (root, side) in [(0, -1.0), (1, 1.0)] {
+            let t = 4.0 * (side * radius - ray.origin.x);
+            let surface = f.surface(&ray, Hit::inside(t, SIDE, root));
+            assert_eq!(surface.t, t, "{base} {top} {radii:?} {ray:?}");
+            let off = (surface.point.x - side * radius).abs();
+            assert!(off <= exp2i(-53) * radius, "{base} {top} {radii:?} {ray:?}: {off:e}");
+        }
+    }
+    assert!(exactly > 200, "{exactly}");
+}
