@@ -152,6 +152,20 @@ impl Rough {
         is_apart(self.t, within.min) & is_apart(self.t, within.max)
     }
 
+    /// The hit at a sound parameter in an interval that begins at zero or later, or that there is none, where that is certain at a
+    /// glance: both have the same way, since neighbouring rays may differ. Numbers of one sign are ordered like their bits; one
+    /// that may have underflown is not certain to be beyond zero.
+    #[inline(always)]
+    pub(super) fn glance(&self, within: Interval) -> Option<Option<Hit>> {
+        const INFINITE: i64 = f64::INFINITY.to_bits() as i64;
+        let [t, min, max] = [self.t, within.min, within.max].map(|x| x.to_bits() as i64);
+        let size = t & i64::MAX;
+        if (min >= 0) & (size - APART > min) & (size + APART < max) & (max <= INFINITE) {
+            return Some(Hit::only(self.t, t >= 0));
+        }
+        if (t < 0) & (min >= 0) & !within.max.is_nan() { Some(None) } else { None }
+    }
+
     /// The hit of a ray that certainly meets the shape.
     #[inline(always)]
     pub(super) fn hit(self, within: Interval) -> Verdict {

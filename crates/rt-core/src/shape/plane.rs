@@ -73,6 +73,15 @@ impl Plane {
         Plane::new(by.point(self.point()), by.direction(self.scaled_normal))
     }
 
+    /// The hit, where a glance does not tell it.
+    #[inline(never)]
+    fn hit_closely(&self, ray: &Ray, within: Interval) -> Option<Hit> {
+        match self.plainly(ray, within) {
+            Ok(hit) => hit,
+            Err(_) => self.hit_carefully(ray, within),
+        }
+    }
+
     /// The hit, when its parameter or its place leave a doubt. An interval that ends exactly at the parameter
     /// that `f64` gives was made from a hit, and does not contain it.
     #[cold]
@@ -155,10 +164,13 @@ impl Piece for Plane {
 impl Primitive for Plane {
     #[inline]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match self.plainly(ray, within) {
-            Ok(hit) => hit,
-            Err(_) => self.hit_carefully(ray, within),
+        let rough = Rough::new(&self.facing, ray);
+        if rough.is_sound()
+            && let Some(hit) = rough.glance(within)
+        {
+            return hit;
         }
+        self.hit_closely(ray, within)
     }
 
     fn crossings(&self, ray: &Ray, within: Interval, each: &mut dyn FnMut(Hit)) {
@@ -233,6 +245,44 @@ mod tests {
             assert_eq!(plane.hit(&ray, Interval::LINE.until(hit.t())), None);
             assert_eq!(plane.hit(&ray, Interval::LINE.after(hit.t())), None);
         }
+    }
+
+    /// What a glance tells of a parameter and an interval is what the careful way says, and it tells all but ends beside the
+    /// parameter and intervals that begin behind the origin.
+    #[test]
+    fn a_glance_is_right() {
+        let mut random = crate::testing::Random::new(5);
+        let mut told = [0; 4];
+        for case in 0..40_000 {
+            let size = if case % 5 == 0 { random.magnitude(-150.0, 150.0) } else { 1.0 };
+            let plane = Plane::new(random.in_cube() * size, random.direction()).unwrap();
+            let speed = if case % 7 == 0 { random.magnitude(-150.0, 150.0) } else { 1.0 };
+            let ray = Ray::new(random.in_cube() * (3.0 * size), random.direction() * speed);
+            let rough = Rough::new(&plane.facing, &ray);
+            if !rough.is_sound() {
+                continue;
+            }
+            let mut end = |other: f64| match random.below(8) {
+                0 => f64::NAN,
+                1 => -f64::NAN,
+                2 => rough.t,
+                3 => rough.t * (1.0 + random.sign() * random.magnitude(-16.0, -1.0)),
+                4 => 1.0 - 2.0 * rough.t,
+                _ => other,
+            };
+            let within = Interval::new(end(0.0), end(f64::INFINITY));
+            let careful = plane.hit_closely(&ray, within);
+            match rough.glance(within) {
+                Some(hit) => {
+                    assert_eq!(hit, careful, "{plane:?} {ray:?} {within:?}");
+                    told[usize::from(hit.is_some())] += 1;
+                }
+                None if within.min == 0.0 && within.max == f64::INFINITY => told[2] += 1,
+                None => told[3] += 1,
+            }
+            assert_eq!(plane.hit(&ray, within), careful, "{plane:?} {ray:?} {within:?}");
+        }
+        assert!(told[0] > 2000 && told[1] > 2000 && told[2] == 0 && told[3] > 2000, "{told:?}");
     }
 
     #[test]
