@@ -137,7 +137,8 @@ impl Cuboid {
         let is_finite = |negative: i64| (negative as u64) < SIGN | INFINITY;
         if first > TINY {
             if first - STEPS > begin {
-                if first + STEPS < until {
+                // NaN may wrap: it is in doubt.
+                if first.wrapping_add(STEPS) < until {
                     if within.min.is_nan() | within.max.is_nan() || slabs.are_doubtful() {
                         return Err(());
                     }
@@ -158,7 +159,7 @@ impl Cuboid {
             // Neither of NaN nor of an end that is NaN.
             let is_behind = first as u64 > SIGN | TINY as u64;
             let end = within.max.to_bits() as i64;
-            if is_behind && until > TINY && until - STEPS > begin && until + STEPS < end {
+            if is_behind && until > TINY && until - STEPS > begin && end - until > STEPS {
                 if slabs.are_doubtful() {
                     return Err(());
                 }
@@ -839,6 +840,31 @@ mod tests {
             [-5.0000001192092896, 74.92578125, 9.205637315716674e307],
         );
         assert_eq!(faces(&cuboid, &ray), []);
+    }
+
+    /// Numbers that are none, also those with the greatest bits, which arithmetic with bits may overflow at.
+    #[test]
+    fn nothing_is_hit_by_what_is_no_number() {
+        let cuboid = Cuboid::new([-1.0, -2.0, -3.0], [1.0, 2.0, 3.0]).unwrap();
+        let bits =
+            [u64::MAX, u64::MAX >> 1, (u64::MAX >> 1) - 6, 0x7ff0_0000_0000_0001, 0x7ff8 << 48, 0xfff8 << 48];
+        // From outside, from inside, and beside it.
+        for origin in [[0.25, 0.5, 9.0], [0.25, 0.5, 1.0], [5.0, 0.5, 1.0]] {
+            for place in 0..8 {
+                for none in bits.map(f64::from_bits) {
+                    let [mut o, mut d, mut ends] = [origin, [0.125, 0.0, -1.0], [0.0, f64::INFINITY, 0.0]];
+                    match place {
+                        0..3 => o[place] = none,
+                        3..6 => d[place - 3] = none,
+                        _ => ends[place - 6] = none,
+                    }
+                    let (ray, within) = (Ray::new(o, d), Interval::new(ends[0], ends[1]));
+                    assert_eq!(cuboid.hit(&ray, within), None, "{ray:?} {within:?} {:x}", none.to_bits());
+                    assert_eq!(cuboid.clipped::<PairedSlabs>(&ray, within), None, "{ray:?} {within:?}");
+                    cuboid.crossings(&ray, within, &mut |hit| panic!("{ray:?} {within:?} {hit:?}"));
+                }
+            }
+        }
     }
 
     #[test]
