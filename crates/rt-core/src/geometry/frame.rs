@@ -202,7 +202,8 @@ impl Frame {
         let window = Window { absolute: absolute * exp2i(-power) };
         // A raw `t` may exceed the interval's end by its error where the true one does not: the ray begins before it.
         if within.min == 0.0 && far <= 8.0 {
-            // By `absolute`, which is less than 2 `absolute` in a coordinate: the error takes it. The origin itself is rounded twice.
+            // By `absolute`, which is less than 2 `absolute` in a coordinate: the error takes it. The origin itself, rounded once, is
+            // known to 8 u = 2^-50.
             let error = absolute * 2.0 + exp2i(-48);
             return (Some(LocalRay { origin, error, direction, inverse, factor, shift: absolute }), window);
         }

@@ -11,9 +11,9 @@
 //!   the entry counts as 0 anyway, and an exit keeps its sign.
 //! - The origin is moved outward by `e + 4 v (|o| + e)`, to `o'`, and `c = -o' * r` is made of the reciprocal before it was
 //!   rounded, and rounded itself.
-//! - The roundings of `r` and, without fused multiply-add, of the product err by v each of `|x r|`, at most `|(x - o') r| + |o' r|`,
-//!   that of `c` by v of `|o' r|`, that of the sum by v of itself: altogether by 3 v of the parameter, which the factor 1 -+ 4 v
-//!   outweighs, and 3 v `|o' r|`, which the step outward does. What is lost in `f64` is far less.
+//! - The roundings of `r` and, without fused multiply-add, of the product err by v each of `|x r|`, which is at most
+//!   `|(x - o') r| + |o' r|`, that of `c` by v of `|o' r|`, that of the sum by v of itself: altogether by 3 v of the parameter,
+//!   which the factor 1 -+ 4 v outweighs, and 3 v `|o' r|`, which the step outward does. What is lost in `f64` is far less.
 //! - Results below the normal range err by 2^-150 at most, far less than `e * |r| >= 2^-98` moved them.
 //! - An axis with `|d_i| < 2^-100` is treated as `2^-100`: no reciprocal is more than 2^100. Within the scene a parameter is at
 //!   most about 2, so this moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if

@@ -152,9 +152,9 @@ impl Rough {
         is_apart(self.t, within.min) & is_apart(self.t, within.max)
     }
 
-    /// The hit at a sound parameter in an interval that begins at zero or later, or that there is none, where that is certain at a
-    /// glance: both have the same way, since neighbouring rays may differ. Numbers of one sign are ordered like their bits; one
-    /// that may have underflown is not certain to be beyond zero.
+    /// The hit at a sound parameter in an interval that begins at zero or later, or that there is none, where that is certain
+    /// at a glance: both have the same way, since neighbouring rays may differ. Numbers of one sign are ordered like their bits,
+    /// and [`APART`] is more than the error; one that may have underflown is not certain to be beyond zero.
     #[inline(always)]
     pub(super) fn glance(&self, within: Interval) -> Option<Option<Hit>> {
         const INFINITE: i64 = f64::INFINITY.to_bits() as i64;
