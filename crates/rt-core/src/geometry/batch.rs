@@ -225,7 +225,7 @@ fn enter<R: Request, L: Lanes>(
                 *answer = R::answer(geometry, ray, query);
                 packet.active &= !(1 << i);
             } else {
-                packet.side.cut(i, query.limit());
+                packet.side.cut(i, query.end());
             }
         }
         return;
@@ -243,7 +243,7 @@ fn enter<R: Request, L: Lanes>(
         let seen = geometry.ask_apart(ray, query).is_break();
         match local {
             Some(local) if !seen => {
-                packet.side.set(i, &local, query.limit());
+                packet.side.set(i, &local, query.end());
                 packet.active |= 1 << i;
             }
             _ => *answer = R::answer(geometry, ray, query),

@@ -5,7 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
-use crate::kernel::{Four, Lanes, Real, at_least, round_down, round_up};
+use crate::kernel::{Four, Lanes, Real, at_least, at_most};
 use crate::math::{exp2i, exponent};
 use crate::scaled::largest;
 use crate::{Aabb, Interval, Ray};
@@ -41,11 +41,16 @@ pub(super) struct LocalRay {
     /// One by each coordinate of it, within a rounding; infinite where that is beyond the range.
     pub inverse: DVec3,
     factor: f64,
+    /// Less the start, and more by three times what is absolute of a window, in kernel coordinates.
     shift: f64,
 }
 
 impl LocalRay {
-    /// An upper bound of the parameter in kernel coordinates that belongs to `t`.
+    /// An upper bound of the parameter in kernel coordinates of whatever belongs to `t` or lies in the [`Window`] beyond.
+    ///
+    /// With `a` the absolute part of the window: `a` for the error of a raw parameter, `a` for the window, and what the window
+    /// has beyond that, 2^-30 of |t|. Every box lies within far + 1 of the origin, as one coordinate of the direction is at
+    /// least 1. Up to four times as far, 2^-30 of |t| is 2^-28 (far + 1) = a / 16 at most; beyond, no box is left.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
         at_least(t * self.factor + self.shift)
@@ -156,14 +161,16 @@ impl Frame {
         Frame { center, exponent, inhabited }
     }
 
-    /// The box in kernel coordinates, rounded outward. Half a unit for the subtraction is outweighed by a whole
-    /// unit; an underflow of the product is less than 2^-1074, and rays carry an error of 2^-97 at least.
+    /// The box in kernel coordinates, rounded outward: by twice what a rounding to `f32` can lose, which leaves much for the
+    /// half unit of the subtraction. Below the normal numbers of `f32` a coordinate may be off by 2^-150; rays carry an error of
+    /// 2^-97 at least.
+    #[inline]
     pub fn outward(&self, bounds: &Aabb) -> ([f32; 3], [f32; 3]) {
         let power = exp2i(-self.exponent);
-        let (min, max) = (bounds.min - self.center, bounds.max - self.center);
+        let (min, max) = ((bounds.min - self.center) * power, (bounds.max - self.center) * power);
         (
-            min.to_array().map(|x| round_down(x.next_down() * power)),
-            max.to_array().map(|x| round_up(x.next_up() * power)),
+            [at_most(min.x), at_most(min.y), at_most(min.z)],
+            [at_least(max.x), at_least(max.y), at_least(max.z)],
         )
     }
 
@@ -205,7 +212,10 @@ impl Frame {
             // By `absolute`, which is less than 2 `absolute` in a coordinate: the error takes it. The origin itself, rounded once, is
             // known to 8 u = 2^-50.
             let error = absolute * 2.0 + exp2i(-48);
-            return (Some(LocalRay { origin, error, direction, inverse, factor, shift: absolute }), window);
+            return (
+                Some(LocalRay { origin, error, direction, inverse, factor, shift: 3.0 * absolute }),
+                window,
+            );
         }
         let mut start = within.min * factor - absolute;
         if !(start.abs() * 2.0 + far <= 8.0) {
@@ -235,7 +245,7 @@ impl Frame {
             direction,
             inverse,
             factor,
-            shift: absolute - start,
+            shift: 3.0 * absolute - start,
         };
         (Some(local), window)
     }
@@ -374,7 +384,7 @@ impl Frame {
                 & lanes.le4(factor, large)
                 & lanes.le4(reach, lanes.splat4(8.0))
                 & lanes.lt4(min, max);
-            let shift = lanes.sub4(absolute, start);
+            let shift = lanes.sub4(lanes.mul4(absolute, lanes.splat4(3.0)), start);
             // As `at_least`.
             let limit = lanes.add4(lanes.mul4(max, factor), shift);
             let limit = lanes.add4(limit, lanes.mul4(lanes.abs4(limit), lanes.splat4(exp2i(-23))));
@@ -545,11 +555,11 @@ mod tests {
             let t = (target - origin).dot(direction) / direction.length_squared();
             // The parameter of the target, in kernel coordinates from where the ray begins.
             let absolute = (far + 1.0) * WINDOW;
-            let along = t * local.factor + local.shift - absolute;
+            let along = t * local.factor + local.shift - 3.0 * absolute;
             let off = local.origin + local.direction * along - (target - center) / unit;
             assert!(largest(off) <= local.error + exp2i(-49) * far, "{off} {ray:?}");
             // It may also begin earlier by what a parameter may err.
-            let at_zero = local.shift == absolute;
+            let at_zero = local.shift == 3.0 * absolute;
             assert_eq!(at_zero, least == 0.0 && far <= 8.0, "{ray:?}");
             assert!(local.error >= if at_zero { 2.0 * absolute } else { 0.0 });
             assert!(local.error <= if at_zero { 2.1 * absolute } else { exp2i(-47) * (far + 1.0) });
@@ -559,6 +569,8 @@ mod tests {
             }
             let limit = f64::from(local.limit(t));
             assert!(limit >= 0.0 && limit - along <= 4.0 * (far + 1.0) * WINDOW + exp2i(-20) * along.abs());
+            let window_end = along + (window.limit(t) - t) * local.factor;
+            assert!(limit >= window_end + 0.9 * absolute, "{limit} {window_end}");
             // Begun in the box: nowhere else than where it enters, if it does not start inside.
             if far > 8.0 {
                 let most = largest(local.origin);

@@ -126,8 +126,8 @@ struct Deferring<'a> {
 
 impl Query for Deferring<'_> {
     #[inline(always)]
-    fn limit(&self) -> f64 {
-        self.nearest.limit()
+    fn end(&self) -> f64 {
+        self.nearest.end()
     }
     #[inline(always)]
     fn defer(&mut self, tori: Run) -> bool {

@@ -97,10 +97,12 @@ impl GeometryBuilder {
     /// Prepares the set for rays.
     pub fn build(self) -> Geometry {
         let GeometryBuilder { shapes, plain } = self;
-        let frame = Frame::around(shapes.len(), shapes.iter().map(regular_bounds));
+        let mut bounds = vec_on_large_pages(shapes.len());
+        bounds.extend(shapes.iter().map(regular_bounds));
+        let frame = Frame::around(shapes.len(), bounds.iter().copied());
         let mut geometry = Geometry { shapes, frame, plain, ..Geometry::default() };
         if !plain {
-            geometry.accelerate();
+            geometry.accelerate(bounds);
         }
         geometry
     }
@@ -122,21 +124,23 @@ impl Geometry {
         self.tree.bytes() + self.store.bytes()
     }
 
-    fn accelerate(&mut self) {
+    /// With the boxes of the shapes that can be put into the tree.
+    fn accelerate(&mut self, bounds: Vec<Option<Aabb>>) {
         let mut items = vec_on_large_pages(self.shapes.len());
         let mut apart: [Vec<u32>; Store::KINDS] = Default::default();
         let mut counts = [0; Store::KINDS];
-        for (object, shape) in self.shapes.iter().enumerate() {
+        for (object, (shape, bounds)) in self.shapes.iter().zip(&bounds).enumerate() {
             let (object, kind) = (object as u32, Store::kind_of(shape));
             counts[kind as usize] += 1;
-            match regular_bounds(shape) {
+            match bounds {
                 Some(bounds) if items.len() < Child::CAPACITY => {
-                    let (min, max) = self.frame.outward(&bounds);
+                    let (min, max) = self.frame.outward(bounds);
                     items.push(Item { min, object, max, kind });
                 }
                 _ => apart[kind as usize].push(object),
             }
         }
+        drop(bounds);
         self.tree = builder::build(&mut items);
         self.store.reserve(counts);
         if size_of_val(&self.shapes[..]) > CACHE {
@@ -156,13 +160,15 @@ impl Geometry {
     }
 
     /// The nearest hit inside the interval: see the [order of hits](self#order-of-hits).
+    #[inline]
     pub fn nearest(&self, ray: &Ray, within: Interval) -> Option<Found> {
-        vectorize(FindNearest { geometry: self, ray, within, from: None })
+        self.find_nearest(ray, within, None)
     }
 
     /// The nearest hit of a ray that leaves a surface: see [`Departure`].
+    #[inline]
     pub fn nearest_leaving(&self, ray: &Ray, within: Interval, from: &Departure) -> Option<Found> {
-        vectorize(FindNearest { geometry: self, ray, within, from: Some(from) })
+        self.find_nearest(ray, within, Some(from))
     }
 
     /// Whether anything lies inside the interval.
@@ -223,6 +229,15 @@ impl Geometry {
         from.and_then(|from| self.shapes.get(from.object as usize).map(|shape| (from, shape)))
     }
 
+    /// A hit comes back in two registers, its object by itself: an answer of three words comes back in memory, where callers
+    /// read it in other pieces than it was written in, and wait.
+    #[inline(always)]
+    fn find_nearest(&self, ray: &Ray, within: Interval, from: Option<&Departure>) -> Option<Found> {
+        let mut object = 0;
+        let hit = find_nearest(self, ray, within, from, &mut object)?;
+        Some(Found { object, hit })
+    }
+
     /// Shows the query every shape that the ray can hit, until it breaks.
     #[inline(always)]
     fn ask<L: Lanes, Q: Query>(
@@ -279,6 +294,38 @@ fn regular_bounds(shape: &Shape) -> Option<Aabb> {
 #[inline(always)]
 fn is_legal(ray: &Ray, within: Interval) -> bool {
     ray.is_valid() && within.min < within.max
+}
+
+/// Not in place: it is long. All arguments come in registers.
+#[inline(never)]
+fn find_nearest(
+    geometry: &Geometry,
+    ray: &Ray,
+    within: Interval,
+    from: Option<&Departure>,
+    object: &mut u32,
+) -> Option<Hit> {
+    vectorize(Apart { geometry, ray, within, from, object })
+}
+
+/// The nearest hit, and its object by itself.
+struct Apart<'a> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    within: Interval,
+    from: Option<&'a Departure>,
+    object: &'a mut u32,
+}
+
+impl Vectorized for Apart<'_> {
+    type Output = Option<Hit>;
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Hit> {
+        let Apart { geometry, ray, within, from, object } = self;
+        let found = FindNearest { geometry, ray, within, from }.run(lanes)?;
+        *object = found.object;
+        Some(found.hit)
+    }
 }
 
 struct FindNearest<'a> {

@@ -333,14 +333,14 @@ impl<Q: Query + Together> Packet<'_, Q> {
             let i = mask.trailing_zeros() as usize & (PACKET - 1);
             mask &= mask - 1;
             let Some(ray) = self.rays.get(i) else { continue };
-            let before = self.queries[i].limit();
+            let before = self.queries[i].end();
             let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
             if flow.is_break() {
                 self.active &= !(1 << i);
                 ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
                 changed = true;
-            } else if self.queries[i].limit() != before {
-                let limit = self.side.limit_of(i, self.queries[i].limit());
+            } else if self.queries[i].end() != before {
+                let limit = self.side.limit_of(i, self.queries[i].end());
                 ends.set(i, limit, bundle.end(i, limit));
                 changed = true;
             }
@@ -380,7 +380,7 @@ impl<Q: Query + Together> Packet<'_, Q> {
             if over >> i & 1 == 1 {
                 ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
             } else {
-                let limit = self.side.limit_of(i, self.queries[i].limit());
+                let limit = self.side.limit_of(i, self.queries[i].end());
                 ends.set(i, limit, bundle.end(i, limit));
             }
         }

@@ -12,8 +12,8 @@ use core::ops::ControlFlow;
 pub(super) trait Query {
     /// Whether near shapes are best seen first: a hit then spares those behind it.
     const NEAREST_FIRST: bool = true;
-    /// Hits from this parameter on do not matter any more.
-    fn limit(&self) -> f64;
+    /// Hits beyond this parameter by more than the [`Window`] do not matter any more.
+    fn end(&self) -> f64;
     /// Shows it tori of the store; false if it wants to see them one by one.
     #[inline(always)]
     fn defer(&mut self, _tori: Run) -> bool {
@@ -29,7 +29,8 @@ pub(super) struct Nearest {
     /// What every shape is asked about, also when nearer hits are known: the last bits of a parameter may depend on an
     /// interval that ends beside it, and must not depend on the order of visits.
     within: Interval,
-    limit: f64,
+    /// The parameter of the best hit, or the end of the interval.
+    end: f64,
     window: Window,
     skip: Option<u32>,
     best: Option<Found>,
@@ -40,7 +41,7 @@ pub(super) struct Nearest {
 impl Nearest {
     #[inline(always)]
     pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
-        Nearest { within, limit: within.max, window, skip, best: None, runner_up: f64::INFINITY }
+        Nearest { within, end: within.max, window, skip, best: None, runner_up: f64::INFINITY }
     }
 
     /// What every shape is asked about.
@@ -60,9 +61,15 @@ impl Nearest {
                     self.runner_up = self.runner_up.min(before.hit.t());
                 }
                 self.best = Some(Found { object, hit });
-                self.limit = self.window.limit(t).min(self.within.max);
+                self.end = t;
             }
         }
+    }
+
+    /// Hits from this parameter on do not matter any more.
+    #[inline(always)]
+    pub fn limit(&self) -> f64 {
+        self.window.limit(self.end).min(self.within.max)
     }
 
     /// What was found, unless that is [contested](Nearest::contested).
@@ -74,14 +81,19 @@ impl Nearest {
     /// Where the hits end of which several objects have one, too close for their order to be sure.
     #[inline(always)]
     pub fn contested(&self) -> Option<f64> {
-        (self.best.is_some() && self.runner_up < self.limit).then_some(self.limit)
+        // Most meet no other object: no limit has to be computed.
+        if self.runner_up == f64::INFINITY || self.best.is_none() {
+            return None;
+        }
+        let limit = self.limit();
+        (self.runner_up < limit).then_some(limit)
     }
 }
 
 impl Query for Nearest {
     #[inline(always)]
-    fn limit(&self) -> f64 {
-        self.limit
+    fn end(&self) -> f64 {
+        self.end
     }
     #[inline(always)]
     fn visit<P: Primitive>(&mut self, ray: &Ray, object: u32, shape: &P) -> ControlFlow<()> {
@@ -143,7 +155,7 @@ impl Contest {
 
 impl Query for Contest {
     #[inline(always)]
-    fn limit(&self) -> f64 {
+    fn end(&self) -> f64 {
         self.limit
     }
     #[inline(always)]
@@ -176,7 +188,7 @@ impl Any {
 impl Query for Any {
     const NEAREST_FIRST: bool = false;
     #[inline(always)]
-    fn limit(&self) -> f64 {
+    fn end(&self) -> f64 {
         self.within.max
     }
     #[inline(always)]
@@ -260,7 +272,7 @@ impl Path<'_> {
 
 impl Query for Path<'_> {
     #[inline(always)]
-    fn limit(&self) -> f64 {
+    fn end(&self) -> f64 {
         self.within.max
     }
     #[inline(always)]
@@ -289,7 +301,7 @@ pub(super) struct Crossings<'a> {
 
 impl Query for Crossings<'_> {
     #[inline(always)]
-    fn limit(&self) -> f64 {
+    fn end(&self) -> f64 {
         self.within.max
     }
     #[inline(always)]

@@ -28,7 +28,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
             ray,
             number,
             slab: SlabRay::new(lanes, local.origin, local.error, local.inverse),
-            limit: local.limit(query.limit()),
+            limit: local.limit(query.end()),
             local,
             query,
             child: Child::node(0),
@@ -53,7 +53,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
                 if geometry.store.visit(self.child.run(), self.ray, &mut self.query).is_break() {
                     return false;
                 }
-                self.limit = self.local.limit(self.query.limit());
+                self.limit = self.local.limit(self.query.end());
                 None
             }
         };

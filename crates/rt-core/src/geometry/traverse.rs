@@ -85,7 +85,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     query: &mut Q,
 ) -> ControlFlow<()> {
     let slab = SlabRay::new(lanes, local.origin, local.error, local.inverse);
-    let mut end = query.limit();
+    let mut end = query.end();
     let mut limit = local.limit(end);
     let mut room = Room::<STACK>::default();
     let mut stack = room.enter();
@@ -125,8 +125,8 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
             }
             None => {
                 store.visit(child.run(), ray, query)?;
-                if query.limit() != end {
-                    end = query.limit();
+                if query.end() != end {
+                    end = query.end();
                     limit = local.limit(end);
                 }
             }

@@ -97,20 +97,6 @@ impl Row {
     }
 }
 
-/// The greatest `f32` that is at most `x`.
-#[inline(always)]
-pub fn round_down(x: f64) -> f32 {
-    let y = x as f32;
-    if y as f64 > x { y.next_down() } else { y }
-}
-
-/// The least `f32` that is at least `x`; NaN for NaN.
-#[inline(always)]
-pub fn round_up(x: f64) -> f32 {
-    let y = x as f32;
-    if (y as f64) < x { y.next_up() } else { y }
-}
-
 /// What a rounding to `f32` can lose, twice.
 const STEP: f64 = crate::math::exp2i(-23);
 
@@ -121,6 +107,12 @@ const TWO_STEPS: f64 = crate::math::exp2i(-22);
 #[inline(always)]
 pub fn at_least(x: f64) -> f32 {
     (x + x.abs() * STEP) as f32
+}
+
+/// An `f32` that is at most `x` and not much less, as [`at_least`].
+#[inline(always)]
+pub fn at_most(x: f64) -> f32 {
+    (x - x.abs() * STEP) as f32
 }
 
 /// A ray ready for the slab test.

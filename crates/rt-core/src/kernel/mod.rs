@@ -21,7 +21,7 @@ mod task;
 mod tests;
 mod triple;
 
-pub use boxes::{Boxes, Row, SlabRay, at_least, round_down, round_up};
+pub use boxes::{Boxes, Row, SlabRay, at_least, at_most};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::{prefetch, prefetch_lines, vec_on_large_pages};
@@ -44,5 +44,11 @@ pub fn vectorize<V: Vectorized>(task: V) -> V::Output {
         // SAFETY: the level is Avx2 only after run-time detection of all that `avx2::run` names.
         return unsafe { avx2::run(task) };
     }
+    portable(task)
+}
+
+/// Not in place: its room on the stack would be that of the other way, too.
+#[inline(never)]
+fn portable<V: Vectorized>(task: V) -> V::Output {
     task.run(PortableLanes)
 }
