@@ -3,6 +3,8 @@
 //! Source: Wald 2007, "On fast construction of SAH-based bounding volume hierarchies" (doi:10.1109/RT.2007.4342588).
 //! The tree decides time only, never an answer.
 
+mod twig;
+
 use super::store::Run;
 use super::tree::{Child, Node, Tree};
 use crate::kernel::vec_on_large_pages;
@@ -13,8 +15,15 @@ const MOST_DEPTH_OF_HEURISTIC: usize = 40;
 /// No path from the root has more nodes: 25 halvings of [`Child::CAPACITY`] shapes, and room.
 pub(super) const MOST_DEPTH: usize = MOST_DEPTH_OF_HEURISTIC + 32;
 const BINS: usize = 16;
+/// For few items, as empty bins take time to make.
+const FEW_BINS: usize = 8;
+/// So many have [`bins_for`] them.
+const MOST_WITH_FEW_BINS: usize = 8 * (FEW_BINS - 4) + 7;
 /// Up to this many shapes, testing all boxes is faster than going down a tree (measured: docs/performance.md).
 pub(super) const MOST_WITHOUT_TREE: usize = 32;
+
+/// Up to this many shapes, a part of the tree is found by weighing all ways to put it together.
+const MOST_IN_TWIG: usize = 32;
 
 /// A shape to be put into the tree: its box in kernel coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +116,7 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     // Nodes hold about four shapes each; untouched room costs nothing but addresses.
     let mut nodes = vec_on_large_pages(items.len() / 3 + 1);
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
-    build_node(items, 0, whole, &mut nodes);
+    build_node(items, 0, whole, twig::memory_cost(items.len()), &mut nodes);
     number_by_kind(items, &mut nodes);
     // What is left over of a large array was never touched, and is memory in name only.
     if nodes.len() > 4096 {
@@ -132,7 +141,10 @@ fn rows(items: &[Item]) -> Vec<Node> {
 }
 
 /// Adds the node of `whole`, whose items are `items`, which begin at `offset` among all.
-fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<Node>) {
+fn build_node(items: &mut [Item], offset: usize, whole: Part, memory: f32, nodes: &mut Vec<Node>) {
+    if items.len() <= MOST_IN_TWIG {
+        return twig::build(items, offset, whole, memory, nodes);
+    }
     let index = nodes.len();
     nodes.push(Node::EMPTY);
     let mut parts = [Part { start: 0, ..whole }; 8];
@@ -146,19 +158,6 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
         let part = parts[chosen];
         (parts[chosen], parts[count]) = split(&mut items[part.start..part.start + part.count], part);
         count += 1;
-    }
-    // When none does, the smallest part that fits is dissolved: all its items get a lane here, which spares its node.
-    loop {
-        let fits = |&i: &usize| parts[i].count > 1 && count + parts[i].count - 1 <= 8;
-        let chosen = (0..count).filter(fits).min_by_key(|&i| (parts[i].count <= 2, parts[i].count));
-        let Some(chosen) = chosen else { break };
-        let part = parts[chosen];
-        for (i, item) in items[part.start..part.start + part.count].iter().enumerate() {
-            let place = if i == 0 { chosen } else { count + i - 1 };
-            parts[place] =
-                Part { start: part.start + i, count: 1, depth: part.depth, bounds: Bounds::of(item) };
-        }
-        count += part.count - 1;
     }
     let parts = &mut parts[..count];
     parts.sort_unstable_by_key(|part| part.start);
@@ -179,13 +178,13 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
 
     #[cfg(feature = "rayon")]
     if items.len() >= 8192 {
-        return build_children_in_parallel(items, offset, parts, &inner, index, nodes);
+        return build_children_in_parallel(items, offset, memory, parts, &inner, index, nodes);
     }
     for (lane, part) in parts.iter().enumerate() {
         if inner[lane] {
             nodes[index].children[lane] = Child::node(nodes.len());
             let members = &mut items[part.start..part.start + part.count];
-            build_node(members, offset + part.start, *part, nodes);
+            build_node(members, offset + part.start, *part, memory, nodes);
         }
     }
 }
@@ -195,6 +194,7 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
 fn build_children_in_parallel(
     items: &mut [Item],
     offset: usize,
+    memory: f32,
     parts: &[Part],
     inner: &[bool; 8],
     index: usize,
@@ -214,7 +214,7 @@ fn build_children_in_parallel(
         .into_par_iter()
         .map(|(lane, part, members)| {
             let mut nodes = Vec::with_capacity(members.len() / 4 + 1);
-            build_node(members, offset + part.start, part, &mut nodes);
+            build_node(members, offset + part.start, part, memory, &mut nodes);
             (lane, nodes)
         })
         .collect();
@@ -232,18 +232,16 @@ fn build_children_in_parallel(
 
 /// Splits a part with at least two items; they are put in the order of the halves.
 fn split(items: &mut [Item], part: Part) -> (Part, Part) {
-    let plane = if part.depth < MOST_DEPTH_OF_HEURISTIC { best_plane(items) } else { None };
-    let (middle, left, right) = match plane {
-        Some(plane) => {
-            let mut middle = 0;
-            // Without a branch on what cannot be predicted: those on the right change places among each other.
-            for i in 0..items.len() {
-                let left = plane.is_left(&items[i]);
-                items.swap(i, middle);
-                middle += usize::from(left);
-            }
-            (middle, plane.left, plane.right)
-        }
+    let halves = match items.len() {
+        _ if part.depth >= MOST_DEPTH_OF_HEURISTIC => None,
+        0..=2 => None,
+        3 => Some(divide_few::<3>(items)),
+        4 => Some(divide_few::<4>(items)),
+        5..=MOST_WITH_FEW_BINS => divide::<FEW_BINS>(items),
+        _ => divide::<BINS>(items),
+    };
+    let (middle, left, right) = match halves {
+        Some(halves) => halves,
         None => {
             let middle = items.len() / 2;
             let bounds = |items: &[Item]| {
@@ -262,14 +260,66 @@ fn split(items: &mut [Item], part: Part) -> (Part, Part) {
     )
 }
 
+/// Puts the items in order by the plane of least cost, if there is any. Where the second half begins, and the boxes of both.
+fn divide<const BINS: usize>(items: &mut [Item]) -> Option<(usize, Bounds, Bounds)> {
+    let plane = best_plane::<BINS>(items)?;
+    let mut middle = 0;
+    // Without a branch on what cannot be predicted: those on the right change places among each other.
+    for i in 0..items.len() {
+        let left = plane.is_left(&items[i]);
+        items.swap(i, middle);
+        middle += usize::from(left);
+    }
+    Some((middle, plane.left, plane.right))
+}
+
+/// Divides three or four items as costs least of all ways, planes or not. As [`divide`].
+fn divide_few<const N: usize>(items: &mut [Item]) -> (usize, Bounds, Bounds) {
+    let mut bounds = [Bounds::EMPTY; N];
+    for (bounds, item) in bounds.iter_mut().zip(items.iter()) {
+        *bounds = Bounds::of(item);
+    }
+    let both = |a: &Bounds, b: &Bounds| {
+        let mut both = *a;
+        both.add(b);
+        both
+    };
+    let mut best = (f32::INFINITY, 0, 1, Bounds::EMPTY, Bounds::EMPTY);
+    // One by itself.
+    for alone in 0..N {
+        let mut others = Bounds::EMPTY;
+        for other in (0..N).filter(|&other| other != alone) {
+            others.add(&bounds[other]);
+        }
+        let cost = bounds[alone].half_area() + others.half_area() * (N - 1) as f32;
+        if cost < best.0 {
+            best = (cost, alone, 1, bounds[alone], others);
+        }
+    }
+    // The first with another, in pairs.
+    if N == 4 {
+        for with in 1..4 {
+            let [a, b] = [[2, 3], [1, 3], [1, 2]][with - 1];
+            let (pair, others) = (both(&bounds[0], &bounds[with]), both(&bounds[a], &bounds[b]));
+            let cost = (pair.half_area() + others.half_area()) * 2.0;
+            if cost < best.0 {
+                best = (cost, with, 2, pair, others);
+            }
+        }
+    }
+    let (_, chosen, middle, first, second) = best;
+    items.swap(middle - 1, chosen);
+    (middle, first, second)
+}
+
 /// How centres fall into bins on each axis.
 #[derive(Clone, Copy)]
-struct Binning {
+struct Binning<const BINS: usize> {
     origin: [f32; 4],
     factor: [f32; 4],
 }
 
-impl Binning {
+impl<const BINS: usize> Binning<BINS> {
     #[inline(always)]
     fn bins(&self, bounds: &Bounds) -> [usize; 3] {
         let middle = bounds.middle();
@@ -279,8 +329,8 @@ impl Binning {
 }
 
 /// A plane between bins, and the boxes of both sides.
-struct Plane {
-    binning: Binning,
+struct Plane<const BINS: usize> {
+    binning: Binning<BINS>,
     axis: usize,
     /// The first bin on the right.
     bin: usize,
@@ -288,7 +338,7 @@ struct Plane {
     right: Bounds,
 }
 
-impl Plane {
+impl<const BINS: usize> Plane<BINS> {
     #[inline(always)]
     fn is_left(&self, item: &Item) -> bool {
         let k = self.axis;
@@ -297,15 +347,19 @@ impl Plane {
     }
 }
 
+/// Few bins for few items.
+fn bins_for(items: usize) -> usize {
+    (4 + items / 8).min(BINS)
+}
+
 /// The plane of least cost, if the centres differ.
-fn best_plane(items: &[Item]) -> Option<Plane> {
+fn best_plane<const BINS: usize>(items: &[Item]) -> Option<Plane<BINS>> {
     let mut centers = Bounds::EMPTY;
     for item in items {
         let middle = Bounds::of(item).middle();
         centers.add(&Bounds { min: middle, max: middle });
     }
-    // Few bins for few items.
-    let count = (4 + items.len() / 8).min(BINS);
+    let count = bins_for(items.len()).min(BINS);
     // The greatest centre falls below `count`: the factor is less than count / extent by more than it can be off
     // by rounding (three roundings of 2^-24).
     let factor: [f32; 4] = core::array::from_fn(|i| {
@@ -379,56 +433,4 @@ fn number_by_kind(items: &[Item], nodes: &mut [Node]) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::Random;
-
-    fn cost(items: &[Item]) -> f64 {
-        let mut all = Bounds::EMPTY;
-        items.iter().for_each(|item| all.add(&Bounds::of(item)));
-        f64::from(all.half_area()) * items.len() as f64
-    }
-
-    /// The chosen plane costs no more than any of those between the bins of any axis, by the surface area heuristic: for
-    /// boxes of all sizes, in clusters or not.
-    #[test]
-    fn the_plane_of_least_cost() {
-        let mut random = Random::new(1);
-        for case in 0..300 {
-            let size = random.magnitude(-3.0, 0.0);
-            let clusters: [_; 3] = core::array::from_fn(|_| random.in_cube() * [3.0, 1.0][case % 2]);
-            let flat = [1.0, 1.0, [1.0, 0.01][case / 2 % 2]];
-            let items: Vec<Item> = (0..20 + case as u32)
-                .map(|object| {
-                    let at = clusters[random.below(3) as usize] + random.in_cube() * random.uniform(0.0, 0.3);
-                    let half = random.in_cube().abs() * size * random.magnitude(-1.0, 0.0);
-                    let of = |p: glam::DVec3| core::array::from_fn(|k| p[k] as f32 * flat[k]);
-                    Item { min: of(at - half), max: of(at + half), object, kind: 0 }
-                })
-                .collect();
-            let plane = best_plane(&items).unwrap();
-            let split = |plane: &Plane| {
-                let (left, right): (Vec<Item>, Vec<Item>) =
-                    items.iter().partition(|item| plane.is_left(item));
-                (cost(&left) + cost(&right), left.len())
-            };
-            let (found, left) = split(&plane);
-            assert!(left > 0 && left < items.len());
-            for axis in (0..3).filter(|&axis| plane.binning.factor[axis] > 0.0) {
-                for bin in 1..(4 + items.len() / 8).min(BINS) {
-                    let (other, left) = split(&Plane { axis, bin, ..plane });
-                    // Up to the roundings of the areas.
-                    assert!(
-                        left == 0 || left == items.len() || found <= other * (1.0 + 1e-5),
-                        "{found} {other}"
-                    );
-                }
-            }
-            for (sum, is_left) in [(&plane.left, true), (&plane.right, false)] {
-                let mut all = Bounds::EMPTY;
-                items.iter().filter(|i| plane.is_left(i) == is_left).for_each(|i| all.add(&Bounds::of(i)));
-                assert_eq!((sum.min, sum.max), (all.min, all.max));
-            }
-        }
-    }
-}
+mod tests;
