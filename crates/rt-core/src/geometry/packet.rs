@@ -66,16 +66,7 @@ pub(super) struct Bundle {
 const STEP: f32 = 1.0 / 1_048_576.0;
 
 impl Bundle {
-    /// An upper bound of the depth at which a ray ends.
-    #[inline(always)]
-    fn end(&self, i: usize, limit: f32) -> f32 {
-        let along = limit * self.depth[i / 8 % GROUPS][i % 8];
-        let (more, less) = (along * (1.0 + STEP), along * (1.0 - STEP));
-        (if more > less { more } else { less })
-            + (self.start[i / 8 % GROUPS][i % 8] + (self.far + 1.0) * STEP)
-    }
-
-    /// The same for eight rays.
+    /// Upper bounds of the depths at which the rays of a group end.
     #[inline(always)]
     fn ends<L: Lanes>(&self, lanes: L, group: usize, limit: &[f32; 8]) -> [f32; 8] {
         let along = lanes.mul(lanes.load(limit), lanes.load(&self.depth[group % GROUPS]));
@@ -328,7 +319,6 @@ impl<Q: Query + Together> Packet<'_, Q> {
             }
             return;
         }
-        let mut changed = false;
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACKET - 1);
             mask &= mask - 1;
@@ -337,17 +327,12 @@ impl<Q: Query + Together> Packet<'_, Q> {
             let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
             if flow.is_break() {
                 self.active &= !(1 << i);
-                ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
-                changed = true;
+                ends.set(i, f32::NEG_INFINITY);
             } else if self.queries[i].end() != before {
-                let limit = self.side.limit_of(i, self.queries[i].end());
-                ends.set(i, limit, bundle.end(i, limit));
-                changed = true;
+                ends.set(i, self.side.limit_of(i, self.queries[i].end()));
             }
         }
-        if changed {
-            ends.most = greatest(lanes, &ends.depths);
-        }
+        ends.follow(lanes, bundle);
     }
 }
 
@@ -378,24 +363,24 @@ impl<Q: Query + Together> Packet<'_, Q> {
             let i = met.trailing_zeros() as usize & (PACKET - 1);
             met &= met - 1;
             if over >> i & 1 == 1 {
-                ends.set(i, f32::NEG_INFINITY, f32::NEG_INFINITY);
+                ends.set(i, f32::NEG_INFINITY);
             } else {
-                let limit = self.side.limit_of(i, self.queries[i].end());
-                ends.set(i, limit, bundle.end(i, limit));
+                ends.set(i, self.side.limit_of(i, self.queries[i].end()));
             }
         }
-        ends.most = greatest(lanes, &ends.depths);
+        ends.follow(lanes, bundle);
     }
 }
 
 /// The rays of a packet on their way, and where they end.
 struct Ends {
     rays: [EightRays; GROUPS],
-    /// The end of each ray, and that of the beam at the same place.
+    /// The end of each ray.
     limits: [[f32; 8]; GROUPS],
-    depths: [[f32; 8]; GROUPS],
-    /// The greatest of the latter.
+    /// A depth of the beam at which all have ended.
     most: f32,
+    /// The rays that end there, one bit each: while one of them does, no other end matters to the beam.
+    last: u32,
     /// By how much boxes and balls are grown.
     pad: f32,
     ball_pad: f32,
@@ -408,8 +393,8 @@ impl Ends {
         let mut ends = Ends {
             rays: [EightRays::EMPTY; GROUPS],
             limits: [[f32::NEG_INFINITY; 8]; GROUPS],
-            depths: [[f32::NEG_INFINITY; 8]; GROUPS],
             most: 0.0,
+            last: 0,
             pad: at_least((far + 1.0) * exp2i(-21) + side.error),
             ball_pad: at_least((far + 1.0) * exp2i(-18) + side.error),
         };
@@ -417,16 +402,33 @@ impl Ends {
             let group = group % GROUPS;
             ends.rays[group] = EightRays::new(lanes, &side.origin[group], &side.direction[group]);
             ends.limits[group] = side.limit[group];
-            ends.depths[group] = bundle.ends(lanes, group, &side.limit[group]);
         }
-        ends.most = greatest(lanes, &ends.depths);
+        ends.follow(lanes, bundle);
         ends
     }
 
+    /// Ends a ray; some time later, [`follow`](Ends::follow) does so with the beam.
     #[inline(always)]
-    fn set(&mut self, place: usize, limit: f32, depth: f32) {
-        let (group, lane) = (place / 8 % GROUPS, place % 8);
-        (self.limits[group][lane], self.depths[group][lane]) = (limit, depth);
+    fn set(&mut self, place: usize, limit: f32) {
+        self.limits[place / 8 % GROUPS][place % 8] = limit;
+        self.last &= !(1 << (place % PACKET));
+    }
+
+    /// Ends the beam with its last rays.
+    #[inline(always)]
+    fn follow<L: Lanes>(&mut self, lanes: L, bundle: &Bundle) {
+        if self.last != 0 {
+            return;
+        }
+        let mut depths = [[f32::NEG_INFINITY; 8]; GROUPS];
+        for group in bundle.groups.clone() {
+            let group = group % GROUPS;
+            depths[group] = bundle.ends(lanes, group, &self.limits[group]);
+        }
+        self.most = greatest(lanes, &depths);
+        for (group, depths) in depths.iter().enumerate() {
+            self.last |= lanes.le(lanes.splat(self.most), lanes.load(depths)) << (8 * group);
+        }
     }
 }
 
