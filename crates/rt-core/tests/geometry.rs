@@ -422,6 +422,50 @@ fn interleaved_rays() {
     assert!(hits > 100 && hits < 350, "{hits}");
 }
 
+/// Rays in the rows of a picture, of any width, are answered as one by one: pinhole and parallel, with a wall beside the
+/// tree, intervals of their own, and some that are no rays.
+#[test]
+fn pictures_row_by_row() {
+    let unit =
+        |i: u32| DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0;
+    let mut builder = Geometry::builder();
+    for i in 0..2000 {
+        builder.push(Sphere::new(unit(i), 0.005 + 0.02 * unit(i + 9).x).unwrap());
+        builder.push(Torus::new(unit(3 * i + 1), unit(i) - 0.5, 0.02, 0.004).unwrap());
+    }
+    builder.push(Plane::new([0.0, 0.0, 0.9], [0.1, 0.0, 1.0]).unwrap());
+    let geometry = builder.build();
+    for (width, height, parallel) in
+        [(64, 40, false), (37, 9, true), (101, 23, false), (16, 70, true), (9, 50, false)]
+    {
+        let (mut rays, mut within) = (Vec::new(), Vec::new());
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let at = DVec3::new(f64::from(x) / f64::from(width), f64::from(y) / f64::from(height), 0.0);
+            let number = rays.len();
+            rays.push(match number % 397 {
+                396 => Ray::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 1.0]),
+                _ if parallel => Ray::new(at - DVec3::Z, [0.0, 0.0, 2.0]),
+                _ => Ray::new([0.5, 0.5, -2.0], at - DVec3::new(0.5, 0.5, -2.0)),
+            });
+            within.push(Interval::new(0.0, [f64::INFINITY, 1.3][number / 1000 % 2]));
+        }
+        let (mut found, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+        geometry.nearest_many(&rays, &within, &mut found);
+        geometry.occluded_many(&rays, &within, &mut occluded);
+        for (i, ray) in rays.iter().enumerate() {
+            assert_eq!(found[i], geometry.nearest(ray, within[i]), "{width} {i}");
+            assert_eq!(occluded[i], geometry.occluded(ray, within[i]), "{width} {i}");
+        }
+        let hits = found.iter().flatten().count();
+        assert!(hits > rays.len() / 2, "{hits} of {}", rays.len());
+        // As many as the shortest slice has.
+        let few = rays.len() / 3;
+        let mut some = vec![None; few];
+        geometry.nearest_many(&rays, &within, &mut some);
+        assert!(some == found[..few]);
+    }
+}
+
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
 #[test]
 fn packets_of_rays_that_graze_spheres() {

@@ -8,6 +8,7 @@ use super::query::{Any, Nearest, Query};
 use super::returning::Returning;
 use super::rings::{Rings, Together};
 use super::stream::interleave;
+use super::tile::{Tile, Tiles};
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::scaled::largest;
@@ -108,73 +109,67 @@ impl<R: Request> Vectorized for Batch<'_, R> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Batch { geometry, rays, within, skip, answers } = self;
-        let blocks = rays.chunks(BLOCK).zip(within.chunks(BLOCK)).zip(answers.chunks_mut(BLOCK));
-        for (number, ((rays, within), answers)) in blocks.enumerate() {
-            let skip = skip.get(number * BLOCK..).unwrap_or(&[]);
-            block::<R, L>(lanes, geometry, rays, within, skip, answers);
-        }
+        let count = rays.len().min(within.len()).min(answers.len());
+        let mut tiles = Tiles::new(&rays[..count]);
+        while block::<R, L>(lanes, geometry, &mut tiles, rays, within, skip, answers) {}
     }
 }
 
-/// At most [`BLOCK`] rays.
+/// The next rays, at most [`BLOCK`]; false where there are no more.
 #[inline(always)]
 fn block<R: Request, L: Lanes>(
     lanes: L,
     geometry: &Geometry,
+    tiles: &mut Tiles,
     rays: &[Ray],
     within: &[Interval],
     skip: &[u32],
     answers: &mut [R::Answer],
-) {
-    let count = rays.len().min(within.len()).min(answers.len());
+) -> bool {
     // The rays without company.
-    let mut alone = [0_u16; BLOCK];
+    let mut alone = [0; BLOCK];
     let mut alone_count = 0;
     let mut packet = Packet {
         rays,
+        tile: Tile::line(0, 0),
         side: Side::EMPTY,
         queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
         active: 0,
         rings: Rings::NONE,
     };
-    for first in (0..count).step_by(PACKET) {
-        let members = first..(first + PACKET).min(count);
-        packet.rays = &rays[members.clone()];
+    let mut any = false;
+    for _ in 0..BLOCK / PACKET {
+        let Some(tile) = tiles.next() else { break };
+        any = true;
+        packet.tile = tile;
         packet.active = 0;
-        if !go_together(packet.rays) {
-            for number in members {
-                alone[alone_count] = number as u16;
+        if !go_together(rays, &tile) {
+            for i in 0..tile.count {
+                alone[alone_count] = tile.place(i);
                 alone_count += 1;
             }
             continue;
         }
-        let skip = skip.get(members.clone()).unwrap_or(&[]);
-        enter::<R, L>(
-            lanes,
-            geometry,
-            &mut packet,
-            &within[members.clone()],
-            skip,
-            &mut answers[members.clone()],
-        );
+        enter::<R, L>(lanes, geometry, &mut packet, within, skip, answers);
         let active = packet.active;
         let done = packet.search(lanes, geometry);
-        for (i, number) in members.enumerate().filter(|(i, _)| active >> i & 1 == 1) {
+        for i in (0..tile.count).filter(|i| active >> i & 1 == 1) {
+            let number = tile.place(i);
             if done >> i & 1 == 1 {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
             } else {
-                alone[alone_count] = number as u16;
+                alone[alone_count] = number;
                 alone_count += 1;
             }
         }
     }
-    let mut numbers = alone[..alone_count].iter().map(|&number| usize::from(number));
+    let mut numbers = alone[..alone_count].iter().copied();
     if geometry.tree.roots != 1 || geometry.tree.bytes() <= CACHE {
         for number in numbers {
             answers[number] =
                 R::one(lanes, geometry, &rays[number], within[number], skip.get(number).copied());
         }
-        return;
+        return any;
     }
     // The next ray that has to go down the tree; those before it are answered.
     let answers = core::cell::RefCell::new(answers);
@@ -198,6 +193,7 @@ fn block<R: Request, L: Lanes>(
     interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
         answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
     });
+    any
 }
 
 /// Makes the rays of a packet and their queries ready; answers those that cannot meet the tree.
@@ -210,19 +206,21 @@ fn enter<R: Request, L: Lanes>(
     skip: &[u32],
     answers: &mut [R::Answer],
 ) {
-    if geometry.frame.enter_together(lanes, packet.rays, within, &mut packet.side) {
-        packet.active = ((1_u64 << packet.rays.len()) - 1) as u32;
-        for (i, (query, within)) in packet.queries.iter_mut().zip(within).enumerate() {
+    let (rays, tile) = (packet.rays, packet.tile);
+    if geometry.frame.enter_together(lanes, rays, within, &tile, &mut packet.side) {
+        packet.active = ((1_u64 << tile.count) - 1) as u32;
+        for (i, query) in packet.queries.iter_mut().enumerate().take(tile.count) {
+            let number = tile.place(i);
             let absolute = packet.side.window[i];
-            *query = R::query(*within, Window { absolute }, skip.get(i).copied());
+            *query = R::query(within[number], Window { absolute }, skip.get(number).copied());
         }
         if geometry.apart.is_empty() {
             return;
         }
-        for (i, (ray, answer)) in packet.rays.iter().zip(answers).enumerate() {
-            let query = &mut packet.queries[i];
-            if geometry.ask_apart(ray, query).is_break() {
-                *answer = R::answer(geometry, ray, query);
+        for (i, query) in packet.queries.iter_mut().enumerate().take(tile.count) {
+            let number = tile.place(i);
+            if geometry.ask_apart(&rays[number], query).is_break() {
+                answers[number] = R::answer(geometry, &rays[number], query);
                 packet.active &= !(1 << i);
             } else {
                 packet.side.cut(i, query.end());
@@ -231,15 +229,16 @@ fn enter<R: Request, L: Lanes>(
         return;
     }
     packet.side.error = 0.0;
-    let rays = packet.rays.iter().zip(within).zip(answers);
-    for (i, ((ray, within), answer)) in rays.enumerate() {
+    for i in 0..tile.count {
+        let number = tile.place(i);
+        let (ray, within, answer) = (&rays[number], &within[number], &mut answers[number]);
         *answer = R::nothing();
         if !is_legal(ray, *within) {
             continue;
         }
         let (local, window) = geometry.frame.enter(ray, *within);
         let query = &mut packet.queries[i];
-        *query = R::query(*within, window, skip.get(i).copied());
+        *query = R::query(*within, window, skip.get(number).copied());
         let seen = geometry.ask_apart(ray, query).is_break();
         match local {
             Some(local) if !seen => {
@@ -258,8 +257,10 @@ fn enter<R: Request, L: Lanes>(
 /// A glance whether rays may make a beam: whether the first, the middle and the last have much the same direction.
 /// Only time depends on it.
 #[inline(always)]
-fn go_together(rays: &[Ray]) -> bool {
-    let (Some(first), Some(last), Some(middle)) = (rays.first(), rays.last(), rays.get(rays.len() / 2))
+fn go_together(rays: &[Ray], tile: &Tile) -> bool {
+    let ray = |i: usize| rays.get(tile.place(i));
+    let (Some(first), Some(last), Some(middle)) =
+        (ray(0), ray(tile.count.saturating_sub(1)), ray(tile.count / 2))
     else {
         return false;
     };

@@ -5,6 +5,7 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
+use super::tile::Tile;
 use crate::kernel::{Four, Lanes, Real, at_least, at_most};
 use crate::math::{exp2i, exponent};
 use crate::scaled::largest;
@@ -333,9 +334,10 @@ impl Frame {
         lanes: L,
         rays: &[Ray],
         within: &[Interval],
+        tile: &Tile,
         side: &mut Side,
     ) -> bool {
-        let last = rays.len().min(within.len()).wrapping_sub(1);
+        let last = tile.count.wrapping_sub(1);
         if last >= PACKET || !self.inhabited {
             return false;
         }
@@ -346,8 +348,9 @@ impl Frame {
         let mut fine = 15;
         for four in 0..PACKET / 4 {
             let (group, lane) = (four / 2, four % 2 * 4);
-            let places = [4 * four, 4 * four + 1, 4 * four + 2, 4 * four + 3];
-            let [a, b, c, e] = places.map(|place| &rays[place.min(last)]);
+            let place = |i: usize| tile.place((4 * four + i).min(last));
+            let places = [place(0), place(1), place(2), place(3)];
+            let [a, b, c, e] = places.map(|place| &rays[place]);
             let world = [
                 lanes.load4([a.origin.x, b.origin.x, c.origin.x, e.origin.x]),
                 lanes.load4([a.origin.y, b.origin.y, c.origin.y, e.origin.y]),
@@ -358,7 +361,7 @@ impl Frame {
                 lanes.load4([a.direction.y, b.direction.y, c.direction.y, e.direction.y]),
                 lanes.load4([a.direction.z, b.direction.z, c.direction.z, e.direction.z]),
             ];
-            let [a, b, c, e] = places.map(|place| &within[place.min(last)]);
+            let [a, b, c, e] = places.map(|place| &within[place]);
             let (min, max) =
                 (lanes.load4([a.min, b.min, c.min, e.min]), lanes.load4([a.max, b.max, c.max, e.max]));
             // Zero times a number is zero, unless the number is infinite or NaN.

@@ -6,6 +6,7 @@ use super::query::{Nearest, Query};
 use super::rings::{Rings, Settle, settle};
 use super::store::{Run, Store};
 use super::stream::interleave;
+use super::tile::Tile;
 use super::{CACHE, FindNearest, Found, Geometry, is_legal};
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::{Departure, Interval, Primitive, Ray};
@@ -85,7 +86,7 @@ fn defer_tori<L: Lanes>(
     found: &mut [Option<Found>],
 ) {
     let mut queries = [Nearest::new(Interval::new(0.0, 0.0), Window::default(), None); PACKET];
-    let mut rings = Rings::NONE;
+    let (mut rings, tile) = (Rings::NONE, Tile::line(0, rays.len()));
     for (place, ((ray, within), from)) in rays.iter().zip(within).zip(from).enumerate() {
         if !is_legal(ray, *within) {
             continue;
@@ -105,12 +106,20 @@ fn defer_tori<L: Lanes>(
                 rings: &mut rings,
                 store: &geometry.store,
                 rays,
+                tile,
                 queries: &mut queries,
                 all: false,
             });
         }
     }
-    settle(Settle { rings: &mut rings, store: &geometry.store, rays, queries: &mut queries, all: true });
+    settle(Settle {
+        rings: &mut rings,
+        store: &geometry.store,
+        rays,
+        tile,
+        queries: &mut queries,
+        all: true,
+    });
     for (((ray, from), nearest), found) in rays.iter().zip(from).zip(&queries).zip(found) {
         *found = decided(geometry, ray, nearest, from);
     }

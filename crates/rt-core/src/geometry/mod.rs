@@ -26,6 +26,7 @@ mod returning;
 mod rings;
 mod store;
 mod stream;
+mod tile;
 mod traverse;
 mod tree;
 

@@ -7,6 +7,7 @@ use super::frame::{GROUPS, PACKET, Side};
 use super::query::Query;
 use super::rings::{Rings, Settle, Together, settle};
 use super::store::Store;
+use super::tile::Tile;
 use super::traverse::{STACK, entry, unpack};
 use super::tree::{Child, Node};
 use super::{CACHE, Geometry};
@@ -25,6 +26,8 @@ const MOST_SPREAD: f64 = 64.0;
 /// The rays of a packet and their queries.
 pub(super) struct Packet<'a, Q> {
     pub rays: &'a [Ray],
+    /// Which of the rays they are.
+    pub tile: Tile,
     /// Places without a ray repeat another.
     pub side: Side,
     pub queries: [Q; PACKET],
@@ -322,7 +325,7 @@ impl<Q: Query + Together> Packet<'_, Q> {
         while mask != 0 {
             let i = mask.trailing_zeros() as usize & (PACKET - 1);
             mask &= mask - 1;
-            let Some(ray) = self.rays.get(i) else { continue };
+            let Some(ray) = self.rays.get(self.tile.place(i)) else { continue };
             let before = self.queries[i].end();
             let flow = geometry.store.visit(run, ray, &mut self.queries[i]);
             if flow.is_break() {
@@ -352,6 +355,7 @@ impl<Q: Query + Together> Packet<'_, Q> {
             rings: &mut self.rings,
             store,
             rays: self.rays,
+            tile: self.tile,
             queries: &mut self.queries,
             all,
         });

@@ -3,6 +3,7 @@
 use super::frame::PACKET;
 use super::query::Query;
 use super::store::Store;
+use super::tile::Tile;
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::shape::Torus;
 use crate::shape::torus::together::{Found, PAIRS, Pair, Told, Waiting, alone, with_one};
@@ -89,6 +90,7 @@ pub(super) struct Settle<'a, Q> {
     pub rings: &'a mut Rings,
     pub store: &'a Store,
     pub rays: &'a [Ray],
+    pub tile: Tile,
     pub queries: &'a mut [Q; PACKET],
     pub all: bool,
 }
@@ -154,7 +156,7 @@ impl<'a, Q: Together> Settle<'a, Q> {
     #[inline(always)]
     fn pair(&self, name: u64) -> Option<(Pair<'a>, bool)> {
         let (torus, object) = self.store.torus(name as usize / PACKET)?;
-        let ray = self.rays.get(name as usize % PACKET)?;
+        let ray = self.rays.get(self.tile.place(name as usize % PACKET))?;
         let within = self.queries[name as usize % PACKET].asks(object);
         Some((Pair { torus, ray, within: within.unwrap_or(Interval::new(0.0, 0.0)) }, within.is_some()))
     }
@@ -172,7 +174,8 @@ impl<'a, Q: Together> Settle<'a, Q> {
             let hit = if found.meet >> lane & 1 == 1 {
                 found.hit(lane)
             } else {
-                let (Some(within), Some(ray)) = (self.queries[place].asks(object), self.rays.get(place))
+                let (Some(within), Some(ray)) =
+                    (self.queries[place].asks(object), self.rays.get(self.tile.place(place)))
                 else {
                     continue;
                 };

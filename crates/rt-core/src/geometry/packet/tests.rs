@@ -97,12 +97,12 @@ fn spheres(random: &mut Random) -> Geometry {
 /// A packet that asks for the nearest hits of those of the rays that are active.
 fn forward<'a>(geometry: &Geometry, rays: &'a [crate::Ray], active: u32) -> Packet<'a, Nearest> {
     let within = [crate::Interval::FORWARD; PACKET];
-    let mut side = Side::EMPTY;
-    assert!(geometry.frame.enter_together(PortableLanes, rays, &within, &mut side));
+    let (mut side, tile) = (Side::EMPTY, super::Tile::line(0, rays.len()));
+    assert!(geometry.frame.enter_together(PortableLanes, rays, &within, &tile, &mut side));
     let queries = core::array::from_fn(|i| {
         Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
     });
-    Packet { rays, side, queries, active, rings: super::Rings::NONE }
+    Packet { rays, tile, side, queries, active, rings: super::Rings::NONE }
 }
 
 /// Rays that go side by side are answered together, and as one by one.
