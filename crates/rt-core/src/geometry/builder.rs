@@ -116,7 +116,7 @@ pub(super) fn build(items: &mut [Item]) -> Tree {
     // Nodes hold about four shapes each; untouched room costs nothing but addresses.
     let mut nodes = vec_on_large_pages(items.len() / 3 + 1);
     let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
-    build_node(items, 0, whole, twig::memory_cost(items.len()), &mut nodes);
+    build_node(items, 0, whole, &mut nodes);
     number_by_kind(items, &mut nodes);
     // What is left over of a large array was never touched, and is memory in name only.
     if nodes.len() > 4096 {
@@ -141,9 +141,9 @@ fn rows(items: &[Item]) -> Vec<Node> {
 }
 
 /// Adds the node of `whole`, whose items are `items`, which begin at `offset` among all.
-fn build_node(items: &mut [Item], offset: usize, whole: Part, memory: f32, nodes: &mut Vec<Node>) {
+fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<Node>) {
     if items.len() <= MOST_IN_TWIG {
-        return twig::build(items, offset, whole, memory, nodes);
+        return twig::build(items, offset, whole, nodes);
     }
     let index = nodes.len();
     nodes.push(Node::EMPTY);
@@ -178,13 +178,13 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, memory: f32, nodes
 
     #[cfg(feature = "rayon")]
     if items.len() >= 8192 {
-        return build_children_in_parallel(items, offset, memory, parts, &inner, index, nodes);
+        return build_children_in_parallel(items, offset, parts, &inner, index, nodes);
     }
     for (lane, part) in parts.iter().enumerate() {
         if inner[lane] {
             nodes[index].children[lane] = Child::node(nodes.len());
             let members = &mut items[part.start..part.start + part.count];
-            build_node(members, offset + part.start, *part, memory, nodes);
+            build_node(members, offset + part.start, *part, nodes);
         }
     }
 }
@@ -194,7 +194,6 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, memory: f32, nodes
 fn build_children_in_parallel(
     items: &mut [Item],
     offset: usize,
-    memory: f32,
     parts: &[Part],
     inner: &[bool; 8],
     index: usize,
@@ -214,7 +213,7 @@ fn build_children_in_parallel(
         .into_par_iter()
         .map(|(lane, part, members)| {
             let mut nodes = Vec::with_capacity(members.len() / 4 + 1);
-            build_node(members, offset + part.start, part, memory, &mut nodes);
+            build_node(members, offset + part.start, part, &mut nodes);
             (lane, nodes)
         })
         .collect();

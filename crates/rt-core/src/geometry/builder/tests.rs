@@ -63,7 +63,7 @@ fn weigh(nodes: &[Node], node: usize, items: &[Item], memory: f64, seen: &mut Ve
             seen.push(item.object as usize);
         }
         assert_eq!((inside.min, inside.max), (bounds.min, bounds.max));
-        sum += f64::from(bounds.half_area()) * (0.5 + 0.5 * run.count as f64);
+        sum += f64::from(bounds.half_area()) * f64::from(twig::SHAPE) * run.count as f64;
     }
     sum + f64::from(all.half_area()) + memory
 }
@@ -79,14 +79,14 @@ fn twigs_of_least_cost() {
         let mut bounds = Bounds::EMPTY;
         items.iter().for_each(|item| bounds.add(&Bounds::of(item)));
         let whole = Part { start: 0, count: items.len(), depth: 0, bounds };
-        let unit = f64::from(bounds.half_area()) / items.len() as f64;
+        let memory = f64::from(twig::MEMORY * bounds.half_area()) / items.len() as f64;
         let mut other = items.clone();
         let (mut nodes, mut greedy) = (Vec::new(), Vec::new());
-        twig::build(&mut items, 0, whole, 0.6, &mut nodes);
+        twig::build(&mut items, 0, whole, &mut nodes);
         widest_first(&mut other, whole, &mut greedy);
         let mut seen = Vec::new();
-        let cost = weigh(&nodes, 0, &items, 0.6 * unit, &mut seen);
-        let most = weigh(&greedy, 0, &other, 0.6 * unit, &mut Vec::new());
+        let cost = weigh(&nodes, 0, &items, memory, &mut seen);
+        let most = weigh(&greedy, 0, &other, memory, &mut Vec::new());
         seen.sort_unstable();
         assert!(seen.into_iter().eq(0..items.len()));
         assert!(cost <= most * (1.0 + 1e-5), "{cost} {most}");

@@ -5,20 +5,16 @@
 //! (doi:10.1145/3105762.3105773), section 4.1.
 
 use super::{Item, MOST_IN_TWIG, Part, most_in_leaf, split};
-use crate::geometry::CACHE;
 use crate::geometry::store::Run;
 use crate::geometry::tree::{Child, Node};
 use alloc::vec::Vec;
 
-/// What a leaf and each of its shapes cost, in visits of a node.
-const LEAF: f32 = 0.5;
-const SHAPE: f32 = 0.5;
-/// What the memory of a node costs, in visits of a node as large as a shape's share of the twig's area, in a tree of so many
-/// shapes. By trial (docs/performance.md): where the tree stays in the cache, fuller leaves cost more than what they save.
-pub(super) fn memory_cost(shapes: usize) -> f32 {
-    // About 50 bytes of nodes a shape.
-    if shapes * 50 <= CACHE { 0.2 } else { 0.6 }
-}
+/// What a shape in a leaf costs, in visits of a node. By trial (docs/performance.md): a leaf of one sphere is told from
+/// beams by the ball in its box, two are not.
+pub(super) const SHAPE: f32 = 1.5;
+/// What the memory of a node costs, in visits of a node as large as a shape's share of the whole's area. By trial: all nodes
+/// together take about 50 bytes a shape.
+pub(super) const MEMORY: f32 = 1.2;
 
 /// A part of the shapes, as a node of a tree of two children a node.
 #[derive(Clone, Copy)]
@@ -35,13 +31,13 @@ struct Fork {
 }
 
 /// Adds the nodes of at most [`MOST_IN_TWIG`] items, which begin at `offset` among all.
-pub(super) fn build(items: &mut [Item], offset: usize, whole: Part, memory: f32, nodes: &mut Vec<Node>) {
+pub(super) fn build(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<Node>) {
     let whole = Part { start: 0, ..whole };
     let empty = Fork { part: whole, halves: [0; 2], leaf: false, cost: [0.0; 8], lanes: [0; 8] };
     let mut twig = Twig {
         forks: [empty; 2 * MOST_IN_TWIG],
         count: 0,
-        memory: memory * whole.bounds.half_area() / whole.count as f32,
+        memory: MEMORY * whole.bounds.half_area() / whole.count as f32,
     };
     let root = twig.weigh(items, whole);
     twig.emit(root, items, offset, nodes);
@@ -64,7 +60,7 @@ impl Twig {
         let members = &mut items[part.start..part.start + part.count];
         let kind = members[0].kind;
         let fits = part.count <= most_in_leaf(kind).max(1) && members.iter().all(|item| item.kind == kind);
-        let as_leaf = if fits { area * (LEAF + SHAPE * part.count as f32) } else { f32::INFINITY };
+        let as_leaf = if fits { area * (SHAPE * part.count as f32) } else { f32::INFINITY };
         let mut fork = Fork { part, halves: [0; 2], leaf: true, cost: [as_leaf; 8], lanes: [0; 8] };
         if part.count > 1 {
             let (first, second) = split(members, part);
