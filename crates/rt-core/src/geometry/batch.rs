@@ -276,8 +276,9 @@ fn go_together(rays: &[Ray], tile: &Tile) -> bool {
 impl Geometry {
     /// The nearest hit of each ray inside its interval: the same as [`nearest`](Geometry::nearest) for each, faster.
     ///
-    /// Rays that go side by side should be neighbours in the slice, as the pixels of a row or of a small tile. Works on
-    /// as many rays as the shortest of the three slices has.
+    /// Rays that go side by side should be neighbours in the slice, as the pixels of a row or of a small tile; the rows of a
+    /// picture, of sixteen pixels or more, are found and taken in tiles. Works on as many rays as the shortest of the three
+    /// slices has.
     pub fn nearest_many(&self, rays: &[Ray], within: &[Interval], found: &mut [Option<Found>]) {
         if self.plain {
             for ((ray, within), found) in rays.iter().zip(within).zip(found) {
