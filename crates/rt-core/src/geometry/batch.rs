@@ -111,11 +111,13 @@ impl<R: Request> Vectorized for Batch<'_, R> {
         let Batch { geometry, rays, within, skip, answers } = self;
         let count = rays.len().min(within.len()).min(answers.len());
         let mut tiles = Tiles::new(&rays[..count]);
-        while block::<R, L>(lanes, geometry, &mut tiles, rays, within, skip, answers) {}
+        while !tiles.are_done() {
+            block::<R, L>(lanes, geometry, &mut tiles, rays, within, skip, answers);
+        }
     }
 }
 
-/// The next rays, at most [`BLOCK`]; false where there are no more.
+/// The next rays, at most [`BLOCK`].
 #[inline(always)]
 fn block<R: Request, L: Lanes>(
     lanes: L,
@@ -125,9 +127,10 @@ fn block<R: Request, L: Lanes>(
     within: &[Interval],
     skip: &[u32],
     answers: &mut [R::Answer],
-) -> bool {
-    // The rays without company.
-    let mut alone = [0; BLOCK];
+) {
+    let mut members = [Tile::line(0, 0); BLOCK / PACKET];
+    // The rays without company, by tile and place in it.
+    let mut alone = [0_u16; BLOCK];
     let mut alone_count = 0;
     let mut packet = Packet {
         rays,
@@ -137,15 +140,13 @@ fn block<R: Request, L: Lanes>(
         active: 0,
         rings: Rings::NONE,
     };
-    let mut any = false;
-    for _ in 0..BLOCK / PACKET {
-        let Some(tile) = tiles.next() else { break };
-        any = true;
+    for (slot, tile) in tiles.take(BLOCK / PACKET).enumerate() {
+        members[slot] = tile;
         packet.tile = tile;
         packet.active = 0;
         if !go_together(rays, &tile) {
             for i in 0..tile.count {
-                alone[alone_count] = tile.place(i);
+                alone[alone_count] = (slot * PACKET + i) as u16;
                 alone_count += 1;
             }
             continue;
@@ -158,18 +159,19 @@ fn block<R: Request, L: Lanes>(
             if done >> i & 1 == 1 {
                 answers[number] = R::answer(geometry, &rays[number], &packet.queries[i]);
             } else {
-                alone[alone_count] = number;
+                alone[alone_count] = (slot * PACKET + i) as u16;
                 alone_count += 1;
             }
         }
     }
-    let mut numbers = alone[..alone_count].iter().copied();
+    let number = |&name: &u16| members[usize::from(name) / PACKET].place(usize::from(name) % PACKET);
+    let mut numbers = alone[..alone_count].iter().map(number);
     if geometry.tree.roots != 1 || geometry.tree.bytes() <= CACHE {
         for number in numbers {
             answers[number] =
                 R::one(lanes, geometry, &rays[number], within[number], skip.get(number).copied());
         }
-        return any;
+        return;
     }
     // The next ray that has to go down the tree; those before it are answered.
     let answers = core::cell::RefCell::new(answers);
@@ -193,7 +195,6 @@ fn block<R: Request, L: Lanes>(
     interleave::<IN_FLIGHT, L, R::Query>(lanes, geometry, next, |number, query| {
         answers.borrow_mut()[number] = R::answer(geometry, &rays[number], &query);
     });
-    any
 }
 
 /// Makes the rays of a packet and their queries ready; answers those that cannot meet the tree.

@@ -42,6 +42,11 @@ impl Tiles {
     pub fn new(rays: &[Ray]) -> Tiles {
         Tiles { width: width(rays), first: 0, column: 0, count: rays.len() }
     }
+
+    /// Whether there is no packet left.
+    pub fn are_done(&self) -> bool {
+        self.first >= self.count
+    }
 }
 
 impl Iterator for Tiles {
@@ -170,7 +175,9 @@ mod tests {
         for (width, height) in [(64, 64), (100, 9), (37, 6), (19, 4), (5, 70), (1, 1), (0, 0)] {
             let rays = camera(&mut random, width, height, 0.2, false);
             let mut seen = alloc::vec![0; rays.len()];
-            for tile in Tiles::new(&rays) {
+            let mut tiles = Tiles::new(&rays);
+            while !tiles.are_done() {
+                let tile = tiles.next().unwrap();
                 assert!((1..=PACKET).contains(&tile.count));
                 (0..tile.count).for_each(|i| seen[tile.place(i)] += 1);
                 if width >= 16 && tile.first < height / 4 * 4 * width {
@@ -178,6 +185,7 @@ mod tests {
                     assert!(tile.first % width <= width - 8);
                 }
             }
+            assert_eq!(tiles.next(), None);
             let most = if width % 8 == 0 { 1 } else { 2 };
             assert!(seen.iter().all(|&n| (1..=most).contains(&n)), "{width} {height}");
         }
