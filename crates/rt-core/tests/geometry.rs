@@ -23,6 +23,11 @@ fn size() -> impl Strategy<Value = f64> {
     prop_oneof![(1_i32..=4).prop_map(|i| f64::from(i) * 0.125), 0.001..0.5, 1.0..4.0]
 }
 
+/// A point in the unit cube: three low-discrepancy numbers (multiples of the inverse of the plastic number and of its powers).
+fn unit(i: u32) -> DVec3 {
+    DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0
+}
+
 /// A direction, often along an axis.
 fn direction() -> impl Strategy<Value = DVec3> {
     prop_oneof![
@@ -393,8 +398,6 @@ fn memory_in_use() {
 /// Rays without company in a scene larger than the cache, where they are interleaved: each finds what it finds alone.
 #[test]
 fn interleaved_rays() {
-    let unit =
-        |i: u32| DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0;
     let mut builder = Geometry::builder();
     for i in 0..100_000 {
         builder.push(Sphere::new(unit(i), 0.002 + 0.005 * unit(i + 9).x).unwrap());
@@ -426,8 +429,6 @@ fn interleaved_rays() {
 /// tree, intervals of their own, and some that are no rays.
 #[test]
 fn pictures_row_by_row() {
-    let unit =
-        |i: u32| DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0;
     let mut builder = Geometry::builder();
     for i in 0..2000 {
         builder.push(Sphere::new(unit(i), 0.005 + 0.02 * unit(i + 9).x).unwrap());
@@ -469,10 +470,6 @@ fn pictures_row_by_row() {
 /// Packets lose no sphere that a ray just touches: near the limit of `f32` and of `f64`, from near and from far.
 #[test]
 fn packets_of_rays_that_graze_spheres() {
-    let unit = |i: u32| {
-        // Three low-discrepancy numbers (multiples of the inverse of the plastic number and of its powers).
-        DVec3::new(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * f64::from(i) % 1.0
-    };
     for (scale, offset) in [(1.0, 0.0), (1e-3, 1e3), (1e6, 1e9), (2_f64.powi(-80), 0.0)] {
         let mut builder = Geometry::builder();
         for i in 0..600 {

@@ -15,14 +15,15 @@ const MOST_DEPTH_OF_HEURISTIC: usize = 40;
 /// No path from the root has more nodes: 25 halvings of [`Child::CAPACITY`] shapes, and room.
 pub(super) const MOST_DEPTH: usize = MOST_DEPTH_OF_HEURISTIC + 32;
 const BINS: usize = 16;
-/// For few items, as empty bins take time to make.
+/// Of few items, as empty bins take time to make.
 const FEW_BINS: usize = 8;
-/// So many have [`bins_for`] them.
+/// The most items for which [`bins_for`], 4 + n / 8, is at most that.
 const MOST_WITH_FEW_BINS: usize = 8 * (FEW_BINS - 4) + 7;
 /// Up to this many shapes, testing all boxes is faster than going down a tree (measured: docs/performance.md).
 pub(super) const MOST_WITHOUT_TREE: usize = 32;
 
-/// Up to this many shapes, a part of the tree is found by weighing all ways to put it together.
+/// Up to this many shapes, a part of the tree is found by weighing all ways to put it together; with more of them it is no better
+/// (counted: docs/performance.md).
 const MOST_IN_TWIG: usize = 32;
 
 /// A shape to be put into the tree: its box in kernel coordinates.
@@ -97,6 +98,12 @@ fn most_in_leaf(kind: u32) -> usize {
     if kind == 5 { 1 } else { 2 }
 }
 
+/// Whether these make a leaf.
+fn fit_in_leaf(items: &[Item]) -> bool {
+    let kind = items[0].kind;
+    items.len() <= most_in_leaf(kind) && items.iter().all(|item| item.kind == kind)
+}
+
 /// Builds the tree over the items and puts them in the order of its leaves.
 pub(super) fn build(items: &mut [Item]) -> Tree {
     let mut bounds = Bounds::EMPTY;
@@ -168,7 +175,7 @@ fn build_node(items: &mut [Item], offset: usize, whole: Part, nodes: &mut Vec<No
         nodes[index].boxes.set(lane, [a, b, c], [d, e, f]);
         let members = &items[part.start..part.start + part.count];
         let kind = members[0].kind;
-        if part.count <= most_in_leaf(kind).max(1) && members.iter().all(|item| item.kind == kind) {
+        if fit_in_leaf(members) {
             let run = Run { kind, first: offset + part.start, count: part.count };
             nodes[index].children[lane] = Child::leaf(run);
         } else {

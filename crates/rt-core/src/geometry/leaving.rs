@@ -86,7 +86,11 @@ fn defer_tori<L: Lanes>(
     found: &mut [Option<Found>],
 ) {
     let mut queries = [Nearest::new(Interval::new(0.0, 0.0), Window::default(), None); PACKET];
-    let (mut rings, tile) = (Rings::NONE, Tile::line(0, rays.len()));
+    let mut rings = Rings::NONE;
+    let (store, tile) = (&geometry.store, Tile::line(0, rays.len()));
+    let ask_about = |rings: &mut Rings, queries: &mut [Nearest; PACKET], all| {
+        settle(Settle { rings, store, rays, tile, queries, all });
+    };
     for (place, ((ray, within), from)) in rays.iter().zip(within).zip(from).enumerate() {
         if !is_legal(ray, *within) {
             continue;
@@ -102,24 +106,10 @@ fn defer_tori<L: Lanes>(
         let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
         queries[place] = query.nearest;
         if rings.are_many() {
-            settle(Settle {
-                rings: &mut rings,
-                store: &geometry.store,
-                rays,
-                tile,
-                queries: &mut queries,
-                all: false,
-            });
+            ask_about(&mut rings, &mut queries, false);
         }
     }
-    settle(Settle {
-        rings: &mut rings,
-        store: &geometry.store,
-        rays,
-        tile,
-        queries: &mut queries,
-        all: true,
-    });
+    ask_about(&mut rings, &mut queries, true);
     for (((ray, from), nearest), found) in rays.iter().zip(from).zip(&queries).zip(found) {
         *found = decided(geometry, ray, nearest, from);
     }

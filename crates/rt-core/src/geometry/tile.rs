@@ -82,7 +82,11 @@ fn greater(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [if b[0] > a[0] { b[0] } else { a[0] }, if b[1] > a[1] { b[1] } else { a[1] }]
 }
 
-/// A step so many times as large as all before it may lead to the next row.
+/// Rows of fewer rays are left as they come: four of them are not much wider than they are high.
+const LEAST_WIDTH: usize = 16;
+
+/// A step so many times as large as all before it may lead to the next row: that step is at least 15 pixels long, and within
+/// a row the greatest so far is at least one or, of places anywhere in their pixels, hardly less.
 const JUMP: f64 = 8.0;
 
 /// The length of the rows in which the rays come, if tiles of four rows hold rays that differ half as much as neighbours
@@ -98,7 +102,7 @@ fn width(rays: &[Ray]) -> Option<usize> {
         }
         most = greater(most, step);
     }
-    if width < 2 * 8 {
+    if width < LEAST_WIDTH {
         return None;
     }
     let spread = |tile: Tile| {

@@ -4,7 +4,7 @@
 //! Source: Ylitie, Karras, Laine 2017, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs"
 //! (doi:10.1145/3105762.3105773), section 4.1.
 
-use super::{Item, MOST_IN_TWIG, Part, most_in_leaf, split};
+use super::{Item, MOST_IN_TWIG, Part, fit_in_leaf, split};
 use crate::geometry::store::Run;
 use crate::geometry::tree::{Child, Node};
 use alloc::vec::Vec;
@@ -58,9 +58,7 @@ impl Twig {
         self.count += 1;
         let area = part.bounds.half_area();
         let members = &mut items[part.start..part.start + part.count];
-        let kind = members[0].kind;
-        let fits = part.count <= most_in_leaf(kind).max(1) && members.iter().all(|item| item.kind == kind);
-        let as_leaf = if fits { area * (SHAPE * part.count as f32) } else { f32::INFINITY };
+        let as_leaf = if fit_in_leaf(members) { area * (SHAPE * part.count as f32) } else { f32::INFINITY };
         let mut fork = Fork { part, halves: [0; 2], leaf: true, cost: [as_leaf; 8], lanes: [0; 8] };
         if part.count > 1 {
             let (first, second) = split(members, part);
