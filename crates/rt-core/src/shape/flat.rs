@@ -1,6 +1,7 @@
 //! What the flat shapes share: the parameter of a plane in plain `f64` with a bound on its error, and normals, axes and
 //! bounds.
 
+use super::paired::Paired;
 use crate::double::Double;
 use crate::expansion::Expansion;
 use crate::kernel::{Pair, Pairs, Product, Task, run};
@@ -56,53 +57,54 @@ impl Facing {
         let Pairs([[x, y], [z, _]]) = self.anchor;
         DVec3::new(x, y, z)
     }
+
+    /// The terms of both inner products, of the origin seen from the anchor and of the direction.
+    #[inline(always)]
+    fn terms(&self, ray: &Paired) -> [Pair; 3] {
+        let n = &self.normal;
+        let (a, b, c) = (ray.first * n.get(0), ray.second * n.get(1), ray.rest * n.get(2));
+        [a.lows(c), a.highs(c), b]
+    }
 }
 
 /// Numerator and denominator of the parameter at which a ray meets a plane, in plain `f64`, and how far to trust them.
 #[derive(Clone, Copy)]
 pub(super) struct Rough {
-    /// The coordinates x and y of the origin seen from the anchor; z and the direction's x.
-    start: [Pair; 2],
-    /// Its y and z.
-    rest: Pair,
-    /// Minus the sixteenth normal times the start, and that normal times the direction.
+    /// The ray, its origin seen from the anchor.
+    ray: Paired,
+    /// Minus the sixteenth normal times the origin, and that normal times the direction.
     products: Pair,
-    /// The sums of the sizes of the terms of both.
-    sizes: Pair,
+    /// Minus the sums of the sizes of the terms of both, or up to twice those, at most -2^-1022.
+    minus_sizes: Pair,
     /// The parameter.
     pub(super) t: f64,
 }
 
 impl Rough {
-    /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, the numerator
-    /// errs by less than 5 u N (normal, difference, product, two additions), the denominator by 4 u M. Where the former is
-    /// more than 2^-36 N and the latter more than 2^-18 M, their quotient errs by less than 2^-14.6 + 2^-32 of itself. 2^-960
-    /// added to N and M is far more than 2^36 times what products lose to underflow; none overflows, with the sixteenth of a
-    /// normal. Infinities and NaN fail.
+    /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, or 2^-1022
+    /// where that is more, the numerator errs by less than 7 u N, the denominator by 6 u M: two roundings (normal, difference) or
+    /// one before the products; three products, each of them within u of itself or, where it underflows, 2^-1075 = u 2^-1022; two
+    /// sums, which do not round there. None overflows, with the sixteenth of a normal. Infinities and NaN fail.
     #[inline(always)]
     pub(super) fn new(plane: &Facing, ray: &Ray) -> Rough {
-        let (o, d) = (ray.origin, ray.direction);
-        let (anchor, n) = (&plane.anchor, &plane.normal);
-        let start = [Pair::new(o.x, o.y) - anchor.get(0), Pair::new(o.z, d.x) - anchor.get(1)];
-        let (a, b, c) = (start[0] * n.get(0), start[1] * n.get(1), Pair::new(d.y, d.z) * n.get(2));
-        let (first, second) = (a.lows(c), a.highs(c));
-        let products = (first + second) + b;
-        let sizes = ((first.abs() + second.abs()) + b.abs()) + Pair::new(exp2i(-960), exp2i(-960));
-        Rough { start, rest: Pair::new(d.y, d.z), products, sizes, t: products.low() / products.high() }
+        let ray = Paired::new(ray, [plane.anchor.get(0), plane.anchor.get(1)]);
+        let [first, second, third] = plane.terms(&ray);
+        let products = (first + second) + third;
+        let minus_sizes = (first.minus_abs() + second.minus_abs()) + third.minus_abs_and_least();
+        Rough { ray, products, minus_sizes, t: products.low() / products.high() }
     }
 
-    /// Whether the relative error of `t` is less than 2^-14. See [`new`](Rough::new).
+    /// Whether the relative error of `t` is less than 2^-14: both parts of the quotient are more than 2^-35 N and 2^-35 M, so that
+    /// it errs by less than `(7 + 6) 2^-18`, which is 2^-14.3, and by second orders. See [`new`](Rough::new).
     #[inline(always)]
     pub(super) fn is_sound(&self) -> bool {
-        (self.sizes * Pair::new(exp2i(-36), exp2i(-18))).is_below(self.products.abs())
+        self.products.minus_abs().is_below(self.minus_sizes * Pair::splat(exp2i(-35)))
     }
 
     /// The cross product of the origin seen from the anchor and the direction.
     #[inline(always)]
     pub(super) fn moment(&self) -> DVec3 {
-        let ([first, second], rest) = (self.start, self.rest);
-        let x_y = Pair::new(first.high(), second.low()) * rest.highs(second) - second.lows(first) * rest;
-        let z = first.low() * rest.low() - first.high() * second.high();
+        let (x_y, z) = self.ray.moment();
         DVec3::new(x_y.low(), x_y.high(), z)
     }
 
@@ -115,7 +117,7 @@ impl Rough {
     /// The largest coordinates, in size, of the origin seen from the anchor and of the direction.
     #[inline(always)]
     pub(super) fn largest(&self) -> (f64, f64) {
-        let ([first, second], rest) = (self.start, self.rest);
+        let Paired { first, second, rest } = self.ray;
         let largest = first.lows(rest).abs().max(first.highs(rest).abs()).max(second.abs());
         (largest.low(), largest.high())
     }
@@ -123,21 +125,21 @@ impl Rough {
     /// The square of the distance between the place and the anchor, rounded five times.
     #[inline(always)]
     pub(super) fn distance_squared(&self) -> f64 {
-        let [first, second] = self.start;
+        let Paired { first, second, rest } = self.ray;
         let x = first.low() + second.high() * self.t;
-        let rest = Pair::new(first.high(), second.low()) + self.rest * Pair::new(self.t, self.t);
+        let rest = Pair::new(first.high(), second.low()) + rest * Pair::splat(self.t);
         let squares = rest * rest;
         squares.low() + squares.high() + x * x
     }
 
     /// A bound on the error of a sound `t`, and on ten roundings of it.
     ///
-    /// The relative errors of numerator, denominator and quotient make `5 u N / |n . v| + 4 u M / |n . d| + u` to first order.
+    /// The relative errors of numerator, denominator and quotient make `7 u N / |n . v| + 6 u M / |n . d| + u` to first order.
     /// What underflows in `t` errs by 2^-1074.
     #[inline(always)]
     pub(super) fn slack(&self) -> f64 {
-        let lost = self.sizes / self.products.abs();
-        self.t.abs() * ((6.0 * U) * lost.low() + (5.0 * U) * lost.high()) + exp2i(-1000)
+        let lost = self.minus_sizes / self.products.minus_abs();
+        self.t.abs() * ((8.0 * U) * lost.low() + (7.0 * U) * lost.high()) + exp2i(-1000)
     }
 
     /// Whether the interval ends exactly at the parameter: then it was made from that hit, and does not contain it.
@@ -220,17 +222,10 @@ impl Glance {
 
     #[inline(always)]
     pub(super) fn new(plane: &Facing, ray: &Ray) -> Glance {
-        let (o, d) = (ray.origin, ray.direction);
-        let (anchor, n) = (&plane.anchor, &plane.normal);
-        let rest = Pair::new(d.y, d.z);
-        let [first, second] = [Pair::new(o.x, o.y) - anchor.get(0), Pair::new(o.z, d.x) - anchor.get(1)];
-        let (a, b, c) = (first * n.get(0), second * n.get(1), rest * n.get(2));
-        let products = (a.lows(c) + a.highs(c)) + b;
-        let (a, b, c) = (first * first, second * second, rest * rest);
-        let squares = (a.lows(c) + a.highs(c)) + b;
-        let across = first * Pair::new(second.high(), rest.low());
-        let along = across.low() + second.low() * d.z + across.high();
-        Glance { products, squares, along, t: products.low() / products.high() }
+        let ray = Paired::new(ray, [plane.anchor.get(0), plane.anchor.get(1)]);
+        let [first, second, third] = plane.terms(&ray);
+        let products = (first + second) + third;
+        Glance { products, squares: ray.squares(), along: ray.along(), t: products.low() / products.high() }
     }
 
     /// Whether the relative error of `t` is less than 2^-37.8.

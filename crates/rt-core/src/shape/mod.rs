@@ -7,6 +7,7 @@ mod disk;
 pub(crate) mod flat;
 mod frustum;
 mod meeting;
+mod paired;
 mod plane;
 mod sphere;
 pub(crate) mod torus;

@@ -4,9 +4,10 @@
 //! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere
 //! Intersection", Ray Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7).
 
+use super::paired::Paired;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
-use crate::kernel::{self, Product, Task};
+use crate::kernel::{self, Pair, Product, Task};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
@@ -86,6 +87,12 @@ impl Sphere {
         let found = kernel::run(FindRescaled { ray: &scaled, radius, hit });
         let scale = exp2i(unit);
         self.record(scaled.unscale(found.t).high, found.local.scale_exact(scale), found.error * scale)
+    }
+
+    /// The ray, seen from the centre.
+    #[inline(always)]
+    fn paired(&self, ray: &Ray) -> Paired {
+        Paired::new(ray, [Pair::new(self.center.x, self.center.y), Pair::new(self.center.z, 0.0)])
     }
 
     /// Entrance and exit as `f64` finds them.
@@ -263,19 +270,22 @@ enum Line {
 /// r < |w| / 6), and by less than `(5.8 r |w| + 10 r^2) u |d|^2`: h by 3 u S over the cosine. `w.d / |d|^2` errs by less
 /// than 9 u |w| / |d|, which is less than 2^-32 of half the chord.
 #[inline(always)]
-fn line(near: f64, w: DVec3, d: DVec3) -> Line {
-    let (square, along, far) = (d.dot(d), w.dot(d), w.dot(w));
-    let mut depth = along * along - square * (far - near);
+fn line(near: f64, ray: &Paired) -> Line {
+    let squares = ray.squares();
+    let (far, square, along) = (squares.low(), squares.high(), ray.along());
+    let depth = if far > 36.0 * near {
+        let (x_y, z) = ray.moment();
+        let x_y = x_y * x_y;
+        near * square - (z * z + x_y.low() + x_y.high())
+    } else {
+        along * along - square * (far - near)
+    };
     // NaN with `near`: then both comparisons are false.
     let safe = exp2i(-35) * (square * (far + near));
     // With the guard of the radius this keeps all products in the range of the exponents but those of a huge `w`, and
     // those make T or the roots infinite or NaN.
     if moderate(square) {
         if depth > safe {
-            if far > 36.0 * near {
-                let moment = w.cross(d);
-                depth = near * square - moment.dot(moment);
-            }
             let inverse = 1.0 / square;
             let (middle, half) = (along * inverse, sqrt(depth) * inverse);
             return Line::Chord(Span {
@@ -293,7 +303,7 @@ fn line(near: f64, w: DVec3, d: DVec3) -> Line {
 
 /// A line and a sphere about zero in `f64`: certain, or in doubt.
 fn rough(radius: f64, near: f64, w: DVec3, d: DVec3) -> Rough {
-    match line(near, w, d) {
+    match line(near, &Paired::of(w, d)) {
         Line::Miss => return Rough::Miss,
         Line::Chord(chord) => return Rough::Span(chord.candidates()),
         Line::Doubt => {}
@@ -441,7 +451,7 @@ impl Task for FindRescaled<'_> {
 impl Primitive for Sphere {
     #[inline(always)]
     fn hit(&self, ray: &Ray, within: Interval) -> Option<Hit> {
-        match line(self.square, ray.origin - self.center, ray.direction) {
+        match line(self.square, &self.paired(ray)) {
             Line::Miss => return None,
             Line::Chord(chord) => {
                 if let Some(hit) = chord.first(within) {
@@ -481,7 +491,7 @@ impl Primitive for Sphere {
             return None;
         }
         // Not the exact root: the surface record refines it, as it does that of any hit.
-        if let Line::Chord(chord) = line(self.square, ray.origin - self.center, ray.direction) {
+        if let Line::Chord(chord) = line(self.square, &self.paired(ray)) {
             return admit_exit(within, chord.leave, 0, 1);
         }
         self.exit_in_doubt(ray, within)
@@ -570,7 +580,7 @@ mod tests {
                 let half = 0.5 * (exact[1] - exact[0]);
                 assert!(margin <= exp2i(-12) * half, "{margin} {half}");
             };
-            let decided = match line(sphere.square, w, d) {
+            let decided = match line(sphere.square, &Paired::of(w, d)) {
                 Line::Chord(span) => {
                     check([span.enter, span.leave], span.margin);
                     true
