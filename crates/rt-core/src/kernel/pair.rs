@@ -76,16 +76,6 @@ impl Pair {
     pub fn abs(self) -> Pair {
         Pair(sse2!(_mm_andnot_pd(_mm_set1_pd(-0.0), self.0)))
     }
-    /// Minus the sizes of both.
-    #[inline(always)]
-    pub fn minus_abs(self) -> Pair {
-        Pair(sse2!(_mm_or_pd(_mm_set1_pd(-0.0), self.0)))
-    }
-    /// Minus the sizes of both or up to twice those, at most -2^-1022: the last bit of the exponents is set with the sign.
-    #[inline(always)]
-    pub fn minus_abs_and_least(self) -> Pair {
-        Pair(sse2!(_mm_or_pd(_mm_set1_pd(-f64::MIN_POSITIVE), self.0)))
-    }
     /// The greater of each two; that of `other` where one is NaN.
     #[inline(always)]
     pub fn max(self, other: Pair) -> Pair {
@@ -154,16 +144,6 @@ impl Pair {
     #[inline(always)]
     pub fn abs(self) -> Pair {
         Pair(self.0.map(f64::abs))
-    }
-    /// Minus the sizes of both.
-    #[inline(always)]
-    pub fn minus_abs(self) -> Pair {
-        Pair(self.0.map(|x| -x.abs()))
-    }
-    /// Minus the sizes of both or up to twice those, at most -2^-1022: the last bit of the exponents is set with the sign.
-    #[inline(always)]
-    pub fn minus_abs_and_least(self) -> Pair {
-        Pair(self.0.map(|x| f64::from_bits(x.to_bits() | (-f64::MIN_POSITIVE).to_bits())))
     }
     /// The greater of each two; that of `other` where one is NaN.
     #[inline(always)]

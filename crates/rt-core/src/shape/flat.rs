@@ -74,31 +74,33 @@ pub(super) struct Rough {
     ray: Paired,
     /// Minus the sixteenth normal times the origin, and that normal times the direction.
     products: Pair,
-    /// Minus the sums of the sizes of the terms of both, or up to twice those, at most -2^-1022.
-    minus_sizes: Pair,
+    /// The sums of the sizes of two of the three terms of both, and 2^-960.
+    sizes: Pair,
     /// The parameter.
     pub(super) t: f64,
 }
 
 impl Rough {
-    /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, or 2^-1022
-    /// where that is more, the numerator errs by less than 7 u N, the denominator by 6 u M: two roundings (normal, difference) or
-    /// one before the products; three products, each of them within u of itself or, where it underflows, 2^-1075 = u 2^-1022; two
-    /// sums, which do not round there. None overflows, with the sixteenth of a normal. Infinities and NaN fail.
+    /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, the numerator
+    /// errs by less than 5 u N (normal, difference, product, two additions), the denominator by 4 u M; 2^-960 is far more than
+    /// 2^36 times what products lose to underflow. None overflows, with the sixteenth of a normal. NaN fails.
+    ///
+    /// Two terms are enough: the third is the sum without them, so N is at most twice their sizes and that of the sum.
     #[inline(always)]
     pub(super) fn new(plane: &Facing, ray: &Ray) -> Rough {
         let ray = Paired::new(ray, [plane.anchor.get(0), plane.anchor.get(1)]);
         let [first, second, third] = plane.terms(&ray);
         let products = (first + second) + third;
-        let minus_sizes = (first.minus_abs() + second.minus_abs()) + third.minus_abs_and_least();
-        Rough { ray, products, minus_sizes, t: products.low() / products.high() }
+        let sizes = (first.abs() + third.abs()) + Pair::splat(exp2i(-960));
+        Rough { ray, products, sizes, t: products.low() / products.high() }
     }
 
-    /// Whether the relative error of `t` is less than 2^-14: both parts of the quotient are more than 2^-35 N and 2^-35 M, so that
-    /// it errs by less than `(7 + 6) 2^-18`, which is 2^-14.3, and by second orders. See [`new`](Rough::new).
+    /// Whether the relative error of `t` is less than 2^-14: numerator and denominator are more than 2^-34 of two terms, so
+    /// more than `1 / (2^35 + 1)` of N and M, and their quotient errs by less than `(5 + 4) 2^-18`, which is 2^-14.8, of itself
+    /// and by second orders. See [`new`](Rough::new).
     #[inline(always)]
     pub(super) fn is_sound(&self) -> bool {
-        self.products.minus_abs().is_below(self.minus_sizes * Pair::splat(exp2i(-35)))
+        (self.sizes * Pair::splat(exp2i(-34))).is_below(self.products.abs())
     }
 
     /// The cross product of the origin seen from the anchor and the direction.
@@ -134,12 +136,12 @@ impl Rough {
 
     /// A bound on the error of a sound `t`, and on ten roundings of it.
     ///
-    /// The relative errors of numerator, denominator and quotient make `7 u N / |n . v| + 6 u M / |n . d| + u` to first order.
+    /// The relative errors of numerator, denominator and quotient make `5 u N / |n . v| + 4 u M / |n . d| + u` to first order.
     /// What underflows in `t` errs by 2^-1074.
     #[inline(always)]
     pub(super) fn slack(&self) -> f64 {
-        let lost = self.minus_sizes / self.products.minus_abs();
-        self.t.abs() * ((8.0 * U) * lost.low() + (7.0 * U) * lost.high()) + exp2i(-1000)
+        let lost = (self.sizes + self.sizes) / self.products.abs() + Pair::splat(1.0);
+        self.t.abs() * ((6.0 * U) * lost.low() + (5.0 * U) * lost.high()) + exp2i(-1000)
     }
 
     /// Whether the interval ends exactly at the parameter: then it was made from that hit, and does not contain it.
@@ -169,9 +171,11 @@ impl Rough {
     }
 
     /// The hit of a ray that certainly meets the shape.
+    ///
+    /// An infinite numerator makes a parameter that is not inside of any interval for certain, an infinite denominator zero.
     #[inline(always)]
     pub(super) fn hit(self, within: Interval) -> Verdict {
-        if self.is_sound() & self.is_clear(within) {
+        if self.is_sound() & self.is_clear(within) & (self.t != 0.0) {
             Ok(self.admit(within, true))
         } else {
             Err(Doubt { ended: self.ends(within) })
