@@ -209,6 +209,15 @@ pub(crate) fn is_plain(d: DVec3) -> bool {
     moderate(d.dot(d)) & kept(d.x) & kept(d.y) & kept(d.z)
 }
 
+/// [`is_plain`], for the directions in the lanes: one bit for each.
+#[inline(always)]
+pub(crate) fn plain_lanes<R: Real>(d: Vector<R>) -> u32 {
+    let (zero, least, square) = (d.x.all(0.0), d.largest() * d.x.all(exp2i(-160)), d.dot(d));
+    let kept = |x: R| least.at_most(x.abs()) | x.abs().at_most(zero);
+    let moderate = zero.all(exp2i(-400)).at_most(square) & square.less(zero.all(exp2i(400)));
+    moderate & kept(d.x) & kept(d.y) & kept(d.z)
+}
+
 /// The discriminant must exceed this many times the bound of its error before a crossing found in `f64` is taken.
 ///
 /// Any number well above 1 makes the decision certain. A parameter is then wrong by at most 2^-15 of half the chord,

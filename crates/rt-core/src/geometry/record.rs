@@ -1,8 +1,9 @@
-//! The records of many hits, four at a time where rays that are neighbours hit the same object, or any tori.
+//! The records of many hits, four at a time where rays that are neighbours hit the same object, or any spheres or tori.
 
+use super::store::Round;
 use super::{Found, Geometry};
 use crate::kernel::{Lanes, Vectorized, vectorize};
-use crate::shape::Torus;
+use crate::shape::{Sphere, Torus};
 use crate::{Hit, Primitive, Ray, Shape, Surface};
 
 /// How many hits ahead of its record the memory of an object is asked for. Only time depends on it: the records of four take
@@ -22,7 +23,7 @@ impl Vectorized for RecordMany<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let RecordMany { geometry, rays, found, surfaces } = self;
         let count = surfaces.len();
-        let mut rings = Rings { of: [None; 4], count: 0 };
+        let (mut spheres, mut tori) = (Waiting::new(), Waiting::new());
         let fours = found.chunks(4).zip(rays.chunks(4));
         for (number, (found, four)) in fours.enumerate() {
             for soon in self.found.iter().skip(4 * number + AHEAD).take(4).flatten() {
@@ -41,6 +42,7 @@ impl Vectorized for RecordMany<'_> {
                     Shape::Plane(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
                     Shape::Cylinder(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
                     Shape::Cone(s) => s.surface_four(lanes, rays, hits, [sa, sb, sc, sd]),
+                    Shape::Sphere(s) => Sphere::surface_each(lanes, [s; 4], rays, hits, [sa, sb, sc, sd]),
                     Shape::Torus(s) => Torus::surface_each(lanes, [s; 4], rays, hits, [sa, sb, sc, sd]),
                     _ => {
                         for ((surface, ray), hit) in [sa, sb, sc, sd].into_iter().zip(rays).zip(hits) {
@@ -52,39 +54,82 @@ impl Vectorized for RecordMany<'_> {
             }
             for (place, found) in (4 * number..).zip(found) {
                 let Some(found) = *found else { continue };
-                match geometry.store.ring(&geometry.shapes, found.object) {
-                    Some(torus) => {
-                        rings.of[rings.count & 3] = Some((torus, found.hit, place));
-                        rings.count += 1;
-                        if rings.count == 4 {
-                            rings.tell(lanes, rays, surfaces);
-                        }
-                    }
-                    None => surfaces[place] = geometry.surface(&rays[place], found),
+                let (ray, hit) = (&rays[place], found.hit);
+                match geometry.store.round(&geometry.shapes, found.object) {
+                    Some(Round::Sphere(sphere)) => spheres.add(lanes, (sphere, hit, place), rays, surfaces),
+                    Some(Round::Torus(torus)) => tori.add(lanes, (torus, hit, place), rays, surfaces),
+                    None => surfaces[place] = geometry.surface(ray, found),
                 }
             }
         }
-        for (torus, hit, place) in rings.of.into_iter().take(rings.count).flatten() {
-            surfaces[place] = torus.surface(&rays[place], hit);
-        }
+        spheres.rest(rays, surfaces);
+        tori.rest(rays, surfaces);
     }
 }
 
-/// Hits with tori, which wait until they are four; and the places of their rays and records.
-struct Rings<'a> {
-    of: [Option<(&'a Torus, Hit, usize)>; 4],
+/// Shapes whose records are made four at a time, each of a shape of its own.
+trait ByFours: Primitive {
+    /// [`Primitive::surface`] for each.
+    fn surface_each<L: Lanes>(
+        lanes: L,
+        shapes: [&Self; 4],
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    );
+}
+
+macro_rules! by_fours {
+    ($($shape:ident)*) => {
+        $(impl ByFours for $shape {
+            #[inline(always)]
+            fn surface_each<L: Lanes>(
+                lanes: L,
+                shapes: [&Self; 4],
+                rays: [&Ray; 4],
+                hits: [Hit; 4],
+                surfaces: [&mut Surface; 4],
+            ) {
+                $shape::surface_each(lanes, shapes, rays, hits, surfaces);
+            }
+        })*
+    };
+}
+by_fours!(Sphere Torus);
+
+/// Hits that wait until they are four, and the places of their rays and records.
+struct Waiting<'a, S> {
+    hits: [Option<(&'a S, Hit, usize)>; 4],
     count: usize,
 }
 
-impl Rings<'_> {
+impl<'a, S: ByFours> Waiting<'a, S> {
     #[inline(always)]
-    fn tell<L: Lanes>(&mut self, lanes: L, rays: &[Ray], surfaces: &mut [Surface]) {
+    fn new() -> Self {
+        Waiting { hits: [None; 4], count: 0 }
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes>(&mut self, lanes: L, hit: (&'a S, Hit, usize), rays: &[Ray], surfaces: &mut [Surface]) {
+        self.hits[self.count & 3] = Some(hit);
+        self.count += 1;
+        if self.count < 4 {
+            return;
+        }
         self.count = 0;
-        if let [Some((ta, a, pa)), Some((tb, b, pb)), Some((tc, c, pc)), Some((td, d, pd))] = self.of
+        if let [Some((sa, a, pa)), Some((sb, b, pb)), Some((sc, c, pc)), Some((sd, d, pd))] = self.hits
             && let Ok(surfaces) = surfaces.get_disjoint_mut([pa, pb, pc, pd])
         {
             let rays = [&rays[pa], &rays[pb], &rays[pc], &rays[pd]];
-            Torus::surface_each(lanes, [ta, tb, tc, td], rays, [a, b, c, d], surfaces);
+            S::surface_each(lanes, [sa, sb, sc, sd], rays, [a, b, c, d], surfaces);
+        }
+    }
+
+    /// The records of those that still wait.
+    #[inline(always)]
+    fn rest(self, rays: &[Ray], surfaces: &mut [Surface]) {
+        for (shape, hit, place) in self.hits.into_iter().take(self.count).flatten() {
+            surfaces[place] = shape.surface(&rays[place], hit);
         }
     }
 }
@@ -106,7 +151,7 @@ mod tests {
     use crate::Interval;
     use crate::kernel::PortableLanes;
     use crate::math::exp2i;
-    use crate::shape::{Cone, Cylinder, Plane, Sphere};
+    use crate::shape::{Cone, Cylinder, Plane};
     use crate::testing::Random;
     use alloc::vec::Vec;
     use glam::DVec3;
@@ -123,18 +168,22 @@ mod tests {
             .add(Sphere::new([0.0, 0.0, 1.0], 0.5).unwrap())
             .add(Cylinder::new([1.0, -0.9, 0.0], [1.5, 1.0, 1.0], 0.4).unwrap())
             .add(Cone::new([-1.0, -0.9, 0.3], 0.8, [-1.0, 1.0, 0.0], 0.1).unwrap())
+            .add(Sphere::new([0.6, 0.2, 1.1], 0.3).unwrap())
+            .add(Sphere::new([-0.5, 0.4, 0.9], 0.2).unwrap())
             .build();
-        let targets = [floor.point(), slope.point(), DVec3::new(1.25, 0.0, 0.5), DVec3::new(-1.0, 0.0, 0.2)];
-        let (mut fours, mut in_doubt) = ([0; 5], 0);
-        for case in 0..2000 {
+        let (tube, cone, balls) =
+            (DVec3::new(1.25, 0.0, 0.5), DVec3::new(-1.0, 0.0, 0.2), DVec3::new(0.0, 0.2, 1.0));
+        let targets = [floor.point(), slope.point(), tube, cone, balls];
+        let (mut fours, mut spheres, mut in_doubt) = ([0; 7], 0, 0);
+        for case in 0..2500 {
             let size = if case % 8 == 0 { random.magnitude(-140.0, 140.0) } else { 1.0 };
             let origin = random.in_cube() * 4.0 * size;
-            let mut target = targets[case % 4];
+            let mut target = targets[case % 5];
             if case % 16 == 1 || case % 16 == 4 {
                 // At the anchor to within this, where a place may have too few digits.
                 target += random.in_cube() * random.magnitude(-40.0, -5.0);
             } else {
-                target += random.in_cube() * if case % 4 < 2 { 9.0 } else { 0.9 };
+                target += random.in_cube() * if case % 5 < 2 { 9.0 } else { 0.9 };
             }
             let rays: Vec<Ray> = (0..9)
                 .map(|i| {
@@ -164,8 +213,12 @@ mod tests {
             {
                 fours[object as usize] += 1;
             }
+            let is_sphere =
+                |found: &Option<Found>| found.is_some_and(|found| [2, 5, 6].contains(&found.object));
+            spheres += found.iter().filter(|found| is_sphere(found)).count();
             in_doubt += u32::from(case % 8 == 0 || case % 16 == 1 || case % 16 == 4);
         }
-        assert!([0, 1, 3, 4].iter().all(|&o| fours[o] > 100) && in_doubt > 100, "{fours:?} {in_doubt}");
+        assert!([0, 1, 3, 4].iter().all(|&o| fours[o] > 100), "{fours:?}");
+        assert!(spheres > 1000 && in_doubt > 100, "{spheres} {in_doubt}");
     }
 }

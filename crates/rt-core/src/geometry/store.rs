@@ -239,15 +239,33 @@ impl Store {
     /// The torus that an object is, which is one of `shapes`; none where it is something else.
     #[inline(always)]
     pub fn ring<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<&'a Torus> {
+        match self.round(shapes, object) {
+            Some(Round::Torus(torus)) => Some(torus),
+            _ => None,
+        }
+    }
+
+    /// What an object is, which is one of `shapes`, if records of its kind are made four at a time, each with an object of its
+    /// own.
+    #[inline(always)]
+    pub fn round<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<Round<'a>> {
         match self.place(object) {
-            (Self::RING, index) => self.tori.shapes.get(index),
+            (Self::RING, index) => self.tori.shapes.get(index).map(Round::Torus),
+            (Self::BALL, index) => self.spheres.shapes.get(index).map(Round::Sphere),
             (kind, _) if (kind as usize) < Self::KINDS => None,
             _ => match shapes.get(object as usize) {
-                Some(Shape::Torus(torus)) => Some(torus),
+                Some(Shape::Torus(torus)) => Some(Round::Torus(torus)),
+                Some(Shape::Sphere(sphere)) => Some(Round::Sphere(sphere)),
                 _ => None,
             },
         }
     }
+}
+
+/// See [`Store::round`].
+pub(super) enum Round<'a> {
+    Sphere(&'a Sphere),
+    Torus(&'a Torus),
 }
 
 #[cfg(test)]

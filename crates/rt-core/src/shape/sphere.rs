@@ -7,11 +7,11 @@
 use super::paired::Paired;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
-use crate::kernel::{self, Pair, Product, Task};
+use crate::kernel::{self, Dekker, Four, Lanes, Pair, Product, Real, Task, Vector};
 use crate::math::{exp2i, exponent, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
-    is_plain, largest, moderate, range_guard, times_power, uncertainty,
+    is_plain, largest, moderate, plain_lanes, radius_about, range_guard, times_power, uncertainty,
 };
 use crate::surface::Coordinates;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Side, Similarity, Surface};
@@ -73,6 +73,44 @@ impl Sphere {
         let point = local.plus_f64(self.center);
         Surface::new(t, point, local.high(), local.high() / self.radius, error_radius(point, error))
             .with_coordinates(Coordinates::Globe)
+    }
+
+    /// The records of four hits, each with a sphere of its own: [`Primitive::surface`] for each.
+    #[inline(always)]
+    pub(crate) fn surface_each<L: Lanes>(
+        lanes: L,
+        spheres: [&Sphere; 4],
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        let numbers = |of: fn(&Sphere) -> f64| Four::new(lanes, spheres.map(of));
+        let (radius, square) = (numbers(|sphere| sphere.radius), numbers(|sphere| sphere.square));
+        let center = Vector::new(lanes, spheres.map(|sphere| &sphere.center));
+        let d = Vector::new(lanes, rays.map(|ray| &ray.direction));
+        let relative = DoubleVector::difference(Vector::new(lanes, rays.map(|ray| &ray.origin)), center);
+        let high = Four::new(lanes, hits.map(|hit| hit.t()));
+        let side = Four::new(lanes, hits.map(|hit| side_of(hit.root())));
+        // The lanes bring their own products.
+        let step = Step::new::<Dekker>(&relative, d, radius, Double { high, low: high.all(0.0) }, side);
+        let sound = step.sound
+            & step.small
+            & high.all(0.0).less(square)
+            & relative.leading().largest().less(high.all(exp2i(30)) * radius)
+            & plain_lanes(d);
+        let local = step.place.nudged(d, step.change);
+        let (point, local) = (local.plus(center), local.leading());
+        let normal = Vector { x: local.x / radius, y: local.y / radius, z: local.z / radius };
+        let error = radius_about(point, high.all(OFF) * radius).to_array();
+        let (t, point) = (step.t.high.to_array(), point.to_array());
+        let (local, normal) = (local.to_array(), normal.to_array());
+        for (i, surface) in surfaces.into_iter().enumerate() {
+            if sound >> i & 1 == 0 {
+                *surface = spheres[i].surface(rays[i], hits[i]);
+                continue;
+            }
+            surface.set(t[i], point[i], local[i], local[i], normal[i], Coordinates::Globe, error[i]);
+        }
     }
 
     /// [`Primitive::surface`] where the short way is not certain.
@@ -364,6 +402,44 @@ struct Refined {
     error: f64,
 }
 
+/// A Newton step on `|p|^2 = r^2`.
+struct Step<R> {
+    /// The place before the step.
+    place: DoubleVector<R>,
+    /// The step.
+    change: R,
+    /// The parameter after it.
+    t: Double<R>,
+    /// Where the chord is long enough, and the place on the right half of it, one bit for each lane.
+    sound: u32,
+    /// Where no other step is needed.
+    small: u32,
+}
+
+impl<R: Real> Step<R> {
+    /// From the parameter `t`; `side` is -1 where the line enters and 1 where it leaves. See [`newton`].
+    #[inline(always)]
+    fn new<P: Product>(relative: &DoubleVector<R>, d: Vector<R>, radius: R, t: Double<R>, side: R) -> Self {
+        let square = d.dot(d);
+        let far = relative.leading().largest() + radius;
+        let place = relative.advanced::<P>(d, t);
+        // Half the derivative; its length is half the chord times the direction's square.
+        let slope = side * place.leading().dot(d);
+        let least = radius.all(exp2i(-60)) * (far * far) * square;
+        let change = -side * (place.excess::<P>(radius) / (radius.all(2.0) * slope));
+        Step {
+            place,
+            change,
+            t: Double::sum(t.high, t.low + change),
+            sound: least.less(slope * slope) & radius.all(0.0).at_most(slope),
+            small: (change.abs() * square).at_most(radius.all(exp2i(-36)) * slope),
+        }
+    }
+}
+
+/// By how many radii a place that [`newton`] finds can be off.
+const OFF: f64 = exp2i(-71);
+
 /// One or two Newton steps on `|p|^2 = r^2` from the hit's parameter; `None` where they may not be enough.
 ///
 /// With S the distance that the ray comes from and the radius, the place `p` is known to 2^-104 S and its residual,
@@ -372,24 +448,24 @@ struct Refined {
 /// 2^-73 h for `s <= 2^-36 h`.
 #[inline(always)]
 fn newton<P: Product>(relative: &DoubleVector, d: DVec3, radius: f64, t: f64, root: u32) -> Option<Refined> {
-    let square = d.dot(d);
-    let far = largest(relative.high()) + radius;
-    let side = if root & 1 == 0 { -1.0 } else { 1.0 };
     let mut t = Double::from(t);
     for _ in 0..2 {
-        let p = relative.advanced::<P>(d, t);
-        // Half the derivative; its length is half the chord times the direction's square.
-        let slope = side * p.high().dot(d);
-        if !(slope * slope > exp2i(-60) * (far * far) * square) || slope < 0.0 {
+        let step = Step::new::<P>(relative, d.into(), radius, t, side_of(root));
+        if step.sound == 0 {
             return None;
         }
-        let change = -side * (p.excess::<P>(radius) / (2.0 * slope));
-        t = Double::sum(t.high, t.low + change);
-        if change.abs() * square <= exp2i(-36) * slope {
-            return Some(Refined { t, local: p.nudged(d, change), error: exp2i(-71) * radius });
+        t = step.t;
+        if step.small != 0 {
+            return Some(Refined { t, local: step.place.nudged(d, step.change), error: OFF * radius });
         }
     }
     None
+}
+
+/// -1 for the root where a line enters, 1 for that where it leaves.
+#[inline(always)]
+fn side_of(root: u32) -> f64 {
+    if root & 1 == 0 { -1.0 } else { 1.0 }
 }
 
 struct FindSurface<'a> {
