@@ -2,7 +2,8 @@
 # Ours beside Embree (Debian: libembree-dev, g++) and the crates obvhs, bvh and parry3d-f64, one thread each:
 #   compare.sh [-e] [N [ROUNDS [sphere|torus]]]   spheres, N of them (-e: Embree only)
 #   compare.sh [-e] all [ROUNDS]                  10^2, 10^4, 10^6 spheres and 10^2, 10^4, 10^5 tori
-# Ours and Embree take turns, so that both meet the machine as fast as it happens to be; each has as many tries.
+# Ours and Embree take turns, so that both meet the machine as fast as it happens to be. Of single rays each has four tries in a round,
+# of batches ours has four and Embree, whose single rays count there too, eight.
 set -e
 cd "$(dirname "$0")/.."
 peers=yes
@@ -24,7 +25,9 @@ embree=target/embree
 ./target/release/dump "$kind" "$n" "$folder"
 for rays in primary random; do
     printf '== %s %s, %s rays, %s rounds in turn\n' "$n" "$kind" "$rays" "$rounds"
-    for round in $(seq "$rounds"); do
+    round=0
+    while [ "$round" -lt "$rounds" ]; do
+        round=$((round + 1))
         echo "round $round"
         # Embree is asked in two ways, twice each.
         ./target/release/cast "$kind" "$n" 4 "$rays"
@@ -32,9 +35,11 @@ for rays in primary random; do
         [ "$round" -lt "$rounds" ] && continue
         ./target/release/judge embree "$kind" "$n" "$rays" "$folder/answers"
         [ $peers = no ] || ./target/release/peers "$kind" "$n" 1 "$rays"
+        echo end
     done | awk -v rounds="$rounds" '
         # The last round is printed whole; ratios are those of each round, for the speed of a machine changes.
         $1 == "round" { round = $2; next }
+        $1 == "end" { complete = 1; next }
         round == rounds { print }
         / build / { build[$1, round] = $3 }
         /Mrays/ && !/any hit/ {
@@ -57,14 +62,15 @@ for rays in primary random; do
             return sprintf("%.2f (%.2f-%.2f)", x, ratios[1], ratios[rounds])
         }
         END {
+            if (!complete) exit 1
             for (r = 1; r <= rounds; r++) {
                 singles[r] = own["single", r] / single[r]
                 batches[r] = own["batch", r] / best[r]
-                # Of few shapes it is too short to tell.
-                builds[r] = build["embree", r] ? build["ours", r] / build["embree", r] : 0
+                # Of few shapes it is too short to tell. Ours is the best of four, that of Embree of two.
+                if (build["embree", r] >= 1) { built++; builds[r] = build["ours", r] / build["embree", r] }
             }
             printf "ours / embree, medians (least-greatest): single %s, batch / the best %s, time of build %s\n",
-                told(singles), told(batches), told(builds)
+                told(singles), told(batches), built == rounds ? told(builds) : "-"
             if (peer) printf "the best peer: %s, single %.2f of ours\n", peer, single_peer / own["single", rounds]
         }'
 done

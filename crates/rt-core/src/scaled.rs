@@ -213,9 +213,12 @@ pub(crate) fn is_plain(d: DVec3) -> bool {
 #[inline(always)]
 pub(crate) fn plain_lanes<R: Real>(d: Vector<R>) -> u32 {
     let (zero, least, square) = (d.x.all(0.0), d.largest() * d.x.all(exp2i(-160)), d.dot(d));
-    let kept = |x: R| least.at_most(x.abs()) | x.abs().at_most(zero);
+    let (x, y, z) = (d.x.abs(), d.y.abs(), d.z.abs());
     let moderate = zero.all(exp2i(-400)).at_most(square) & square.less(zero.all(exp2i(400)));
-    moderate & kept(d.x) & kept(d.y) & kept(d.z)
+    let kept_x = least.at_most(x) | x.at_most(zero);
+    let kept_y = least.at_most(y) | y.at_most(zero);
+    let kept_z = least.at_most(z) | z.at_most(zero);
+    moderate & kept_x & kept_y & kept_z
 }
 
 /// The discriminant must exceed this many times the bound of its error before a crossing found in `f64` is taken.

@@ -1,6 +1,6 @@
 //! The records of many hits, four at a time where rays that are neighbours hit the same object, or any spheres or tori.
 
-use super::store::Round;
+use super::store::ByFour;
 use super::{Found, Geometry};
 use crate::kernel::{Lanes, Vectorized, vectorize};
 use crate::shape::{Sphere, Torus};
@@ -55,9 +55,9 @@ impl Vectorized for RecordMany<'_> {
             for (place, found) in (4 * number..).zip(found) {
                 let Some(found) = *found else { continue };
                 let (ray, hit) = (&rays[place], found.hit);
-                match geometry.store.round(&geometry.shapes, found.object) {
-                    Some(Round::Sphere(sphere)) => spheres.add(lanes, (sphere, hit, place), rays, surfaces),
-                    Some(Round::Torus(torus)) => tori.add(lanes, (torus, hit, place), rays, surfaces),
+                match geometry.store.by_four(&geometry.shapes, found.object) {
+                    Some(ByFour::Sphere(sphere)) => spheres.add(lanes, (sphere, hit, place), rays, surfaces),
+                    Some(ByFour::Torus(torus)) => tori.add(lanes, (torus, hit, place), rays, surfaces),
                     None => surfaces[place] = geometry.surface(ray, found),
                 }
             }
@@ -68,7 +68,7 @@ impl Vectorized for RecordMany<'_> {
 }
 
 /// Shapes whose records are made four at a time, each of a shape of its own.
-trait ByFours: Primitive {
+trait Each: Primitive {
     /// [`Primitive::surface`] for each.
     fn surface_each<L: Lanes>(
         lanes: L,
@@ -79,9 +79,9 @@ trait ByFours: Primitive {
     );
 }
 
-macro_rules! by_fours {
+macro_rules! each {
     ($($shape:ident)*) => {
-        $(impl ByFours for $shape {
+        $(impl Each for $shape {
             #[inline(always)]
             fn surface_each<L: Lanes>(
                 lanes: L,
@@ -95,7 +95,7 @@ macro_rules! by_fours {
         })*
     };
 }
-by_fours!(Sphere Torus);
+each!(Sphere Torus);
 
 /// Hits that wait until they are four, and the places of their rays and records.
 struct Waiting<'a, S> {
@@ -103,7 +103,7 @@ struct Waiting<'a, S> {
     count: usize,
 }
 
-impl<'a, S: ByFours> Waiting<'a, S> {
+impl<'a, S: Each> Waiting<'a, S> {
     #[inline(always)]
     fn new() -> Self {
         Waiting { hits: [None; 4], count: 0 }
@@ -155,6 +155,37 @@ mod tests {
     use crate::testing::Random;
     use alloc::vec::Vec;
     use glam::DVec3;
+
+    /// So are those of many objects, whose copies are found by their places in the tree; hits that are left over, and any order.
+    #[test]
+    fn records_of_many_objects() {
+        let mut random = Random::new(2);
+        let mut builder = Geometry::builder();
+        for _ in 0..6000 {
+            builder = builder.add(Sphere::new(random.in_cube(), random.uniform(0.01, 0.04)).unwrap());
+        }
+        builder = builder.add(Plane::new([0.0, -1.5, 0.0], [0.1, 1.0, 0.0]).unwrap());
+        let geometry = builder.build();
+        let rays: Vec<Ray> = (0..4001)
+            .map(|_| {
+                let (origin, target) = (random.in_cube() * 3.0, random.in_cube() * 1.5);
+                Ray::new(origin, (target - origin) * random.magnitude(-3.0, 3.0))
+            })
+            .collect();
+        let found: Vec<_> = rays.iter().map(|ray| geometry.nearest(ray, Interval::FORWARD)).collect();
+        let nowhere = Surface::new(7.0, DVec3::ZERO, DVec3::ZERO, DVec3::Y, 0.0);
+        let mut surfaces = alloc::vec![nowhere; rays.len()];
+        geometry.surface_many(&rays, &found, &mut surfaces);
+        let mut count = [0; 2];
+        for ((ray, found), surface) in rays.iter().zip(&found).zip(&surfaces) {
+            let expected = found.map_or(nowhere, |found| geometry.surface(ray, found));
+            assert_eq!(alloc::format!("{surface:?}"), alloc::format!("{expected:?}"), "{ray:?}");
+            if let Some(found) = found {
+                count[usize::from(found.object == 6000)] += 1;
+            }
+        }
+        assert!(count[0] > 1000 && count[1] > 50, "{count:?}");
+    }
 
     /// Records by four are those one by one, in all lanes, also where some are in doubt.
     #[test]

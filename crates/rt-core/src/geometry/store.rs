@@ -139,8 +139,8 @@ macro_rules! store {
                 (place >> Self::INDEX_BITS, (place & ((1 << Self::INDEX_BITS) - 1)) as usize)
             }
 
-            /// Whether an object may be of a kind whose records are made four at a time, as far as is known without a look at
-            /// it: among many objects that look takes longer than a record.
+            /// Whether an object may be of a kind of which one object's records are made four at a time, as far as is known without a
+            /// look at it: among many objects that look takes longer than a record.
             #[inline(always)]
             pub fn may_go_by_four(&self, object: u32) -> bool {
                 match self.place(object).0 {
@@ -239,8 +239,8 @@ impl Store {
     /// The torus that an object is, which is one of `shapes`; none where it is something else.
     #[inline(always)]
     pub fn ring<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<&'a Torus> {
-        match self.round(shapes, object) {
-            Some(Round::Torus(torus)) => Some(torus),
+        match self.by_four(shapes, object) {
+            Some(ByFour::Torus(torus)) => Some(torus),
             _ => None,
         }
     }
@@ -248,22 +248,22 @@ impl Store {
     /// What an object is, which is one of `shapes`, if records of its kind are made four at a time, each with an object of its
     /// own.
     #[inline(always)]
-    pub fn round<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<Round<'a>> {
+    pub fn by_four<'a>(&'a self, shapes: &'a [Shape], object: u32) -> Option<ByFour<'a>> {
         match self.place(object) {
-            (Self::RING, index) => self.tori.shapes.get(index).map(Round::Torus),
-            (Self::BALL, index) => self.spheres.shapes.get(index).map(Round::Sphere),
+            (Self::RING, index) => self.tori.shapes.get(index).map(ByFour::Torus),
+            (Self::BALL, index) => self.spheres.shapes.get(index).map(ByFour::Sphere),
             (kind, _) if (kind as usize) < Self::KINDS => None,
             _ => match shapes.get(object as usize) {
-                Some(Shape::Torus(torus)) => Some(Round::Torus(torus)),
-                Some(Shape::Sphere(sphere)) => Some(Round::Sphere(sphere)),
+                Some(Shape::Torus(torus)) => Some(ByFour::Torus(torus)),
+                Some(Shape::Sphere(sphere)) => Some(ByFour::Sphere(sphere)),
                 _ => None,
             },
         }
     }
 }
 
-/// See [`Store::round`].
-pub(super) enum Round<'a> {
+/// See [`Store::by_four`].
+pub(super) enum ByFour<'a> {
     Sphere(&'a Sphere),
     Torus(&'a Torus),
 }

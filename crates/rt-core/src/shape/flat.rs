@@ -83,7 +83,7 @@ pub(super) struct Rough {
 impl Rough {
     /// With N and M the sums of the sizes of the terms of `n . v` and `n . d`, v the origin seen from the anchor, the numerator
     /// errs by less than 5 u N (normal, difference, product, two additions), the denominator by 4 u M; 2^-960 is far more than
-    /// 2^36 times what products lose to underflow. None overflows, with the sixteenth of a normal. NaN fails.
+    /// 2^36 times what products lose to underflow. None overflows, with the sixteenth of a normal.
     ///
     /// Two terms are enough: the third is the sum without them, so N is at most twice their sizes and that of the sum.
     #[inline(always)]
@@ -98,6 +98,9 @@ impl Rough {
     /// Whether the relative error of `t` is less than 2^-14: numerator and denominator are more than 2^-34 of two terms, so
     /// more than `1 / (2^35 + 1)` of N and M, and their quotient errs by less than `(5 + 4) 2^-18`, which is 2^-14.8, of itself
     /// and by second orders. See [`new`](Rough::new).
+    ///
+    /// NaN is not sound. A ray with an infinite coordinate may pass, but then its parameter is infinite, zero or NaN: no hit may be made of
+    /// those.
     #[inline(always)]
     pub(super) fn is_sound(&self) -> bool {
         (self.sizes * Pair::splat(exp2i(-34))).is_below(self.products.abs())
@@ -158,7 +161,8 @@ impl Rough {
 
     /// The hit at a sound parameter in an interval that begins at zero or later, or that there is none, where that is certain
     /// at a glance: both have the same way, since neighbouring rays may differ. Numbers of one sign are ordered like their bits,
-    /// and [`APART`] is more than the error; one that may have underflown is not certain to be beyond zero.
+    /// and [`APART`] is more than the error; one that may have underflown is not certain to be beyond zero. Rays that are not valid
+    /// are behind, or uncertain.
     #[inline(always)]
     pub(super) fn glance(&self, within: Interval) -> Option<Option<Hit>> {
         const INFINITE: i64 = f64::INFINITY.to_bits() as i64;
@@ -172,7 +176,7 @@ impl Rough {
 
     /// The hit of a ray that certainly meets the shape.
     ///
-    /// An infinite numerator makes a parameter that is not inside of any interval for certain, an infinite denominator zero.
+    /// Not at zero, see [`is_sound`](Rough::is_sound); an infinite parameter is inside of no interval for certain.
     #[inline(always)]
     pub(super) fn hit(self, within: Interval) -> Verdict {
         if self.is_sound() & self.is_clear(within) & (self.t != 0.0) {

@@ -1,8 +1,9 @@
 //! The sphere `|p - center| = radius`.
 //!
-//! A ray is first moved to its closest approach to the centre, so that nothing is lost from afar, and the
-//! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere
-//! Intersection", Ray Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7).
+//! From up to six radii the crossings are those of the quadratic formula; from beyond, its discriminant is taken from the moment of
+//! the line, so that nothing is lost. Where that is not certain, the ray is moved to its closest approach to the centre, and the
+//! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
+//! Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7); and what is still in doubt is left to double-double.
 
 use super::paired::Paired;
 use crate::double::Double;
@@ -84,8 +85,8 @@ impl Sphere {
         hits: [Hit; 4],
         surfaces: [&mut Surface; 4],
     ) {
-        let numbers = |of: fn(&Sphere) -> f64| Four::new(lanes, spheres.map(of));
-        let (radius, square) = (numbers(|sphere| sphere.radius), numbers(|sphere| sphere.square));
+        let radius = Four::new(lanes, spheres.map(|sphere| sphere.radius));
+        let square = Four::new(lanes, spheres.map(|sphere| sphere.square));
         let center = Vector::new(lanes, spheres.map(|sphere| &sphere.center));
         let d = Vector::new(lanes, rays.map(|ray| &ray.direction));
         let relative = DoubleVector::difference(Vector::new(lanes, rays.map(|ray| &ray.origin)), center);
@@ -100,7 +101,7 @@ impl Sphere {
             & plain_lanes(d);
         let local = step.place.nudged(d, step.change);
         let (point, local) = (local.plus(center), local.leading());
-        let normal = Vector { x: local.x / radius, y: local.y / radius, z: local.z / radius };
+        let normal = local / radius;
         let error = radius_about(point, high.all(OFF) * radius).to_array();
         let (t, point) = (step.t.high.to_array(), point.to_array());
         let (local, normal) = (local.to_array(), normal.to_array());
@@ -304,7 +305,7 @@ enum Line {
 ///
 /// Half the chord, h, errs by the error of D over `2 |d|^2 h`: 7 u (|w|^2 + r^2) / h. From up to six radii that is
 /// less than 33 u S over the cosine `h / r`, for S = |w| + 2 r. From farther away D is taken as `r^2 |d|^2 - |w x d|^2`
-/// (Lagrange's identity), which errs by less than 2 u T (see [`passes_outside`](crate::scaled::passes_outside);
+/// (Lagrange's identity), which errs by less than 2 u T where the line crosses or nearly does (see [`passes_outside`](crate::scaled::passes_outside);
 /// r < |w| / 6), and by less than `(5.8 r |w| + 10 r^2) u |d|^2`: h by 3 u S over the cosine. `w.d / |d|^2` errs by less
 /// than 9 u |w| / |d|, which is less than 2^-32 of half the chord.
 #[inline(always)]
