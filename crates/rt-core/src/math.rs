@@ -28,6 +28,11 @@ pub(crate) const fn exp2i(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
+/// Says that the branch it is called in is the rarer one: the code goes straight on with the other. Only time depends on it.
+#[cold]
+#[inline(always)]
+pub(crate) const fn rarely() {}
+
 /// The exponent `e` with `2^e <= |x| < 2^(e+1)` of a normal number; -1023 for zero and subnormal numbers, 1024 for
 /// infinities and NaN.
 #[inline(always)]

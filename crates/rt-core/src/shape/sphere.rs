@@ -9,7 +9,7 @@ use super::paired::Paired;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
 use crate::kernel::{self, Dekker, Four, Lanes, Pair, Product, Real, Task, Vector};
-use crate::math::{exp2i, exponent, sqrt};
+use crate::math::{exp2i, exponent, rarely, sqrt};
 use crate::scaled::{
     CLEAR, Candidate, Rough, ScaledRay, admit, admit_exit, checked_length, checked_point, error_radius,
     is_plain, largest, moderate, plain_lanes, radius_about, range_guard, times_power, uncertainty,
@@ -313,6 +313,7 @@ fn line(near: f64, ray: &Paired) -> Line {
     let squares = ray.squares();
     let (far, square, along) = (squares.low(), squares.high(), ray.along());
     let depth = if far > 36.0 * near {
+        rarely();
         let (x_y, z) = ray.moment();
         let x_y = x_y * x_y;
         near * square - (z * z + x_y.low() + x_y.high())
