@@ -3,7 +3,7 @@
 use super::store::ByFour;
 use super::{Found, Geometry};
 use crate::kernel::{Lanes, Vectorized, vectorize};
-use crate::shape::{Sphere, Torus};
+use crate::shape::{Sphere, SurfaceEach, Torus};
 use crate::{Hit, Primitive, Ray, Shape, Surface};
 
 /// How many hits ahead of its record the memory of an object is asked for. Only time depends on it: the records of four take
@@ -67,43 +67,13 @@ impl Vectorized for RecordMany<'_> {
     }
 }
 
-/// Shapes whose records are made four at a time, each of a shape of its own.
-trait Each: Primitive {
-    /// [`Primitive::surface`] for each.
-    fn surface_each<L: Lanes>(
-        lanes: L,
-        shapes: [&Self; 4],
-        rays: [&Ray; 4],
-        hits: [Hit; 4],
-        surfaces: [&mut Surface; 4],
-    );
-}
-
-macro_rules! each {
-    ($($shape:ident)*) => {
-        $(impl Each for $shape {
-            #[inline(always)]
-            fn surface_each<L: Lanes>(
-                lanes: L,
-                shapes: [&Self; 4],
-                rays: [&Ray; 4],
-                hits: [Hit; 4],
-                surfaces: [&mut Surface; 4],
-            ) {
-                $shape::surface_each(lanes, shapes, rays, hits, surfaces);
-            }
-        })*
-    };
-}
-each!(Sphere Torus);
-
 /// Hits that wait until they are four, and the places of their rays and records.
 struct Waiting<'a, S> {
     hits: [Option<(&'a S, Hit, usize)>; 4],
     count: usize,
 }
 
-impl<'a, S: Each> Waiting<'a, S> {
+impl<'a, S: SurfaceEach> Waiting<'a, S> {
     #[inline(always)]
     fn new() -> Self {
         Waiting { hits: [None; 4], count: 0 }

@@ -22,8 +22,21 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 pub use triangle::Triangle;
 
+use crate::kernel::Lanes;
 use crate::{Aabb, Departure, Error, Hit, Interval, Primitive, Ray, Similarity, Surface};
 use alloc::sync::Arc;
+
+/// Shapes whose records are made four at a time, each with a shape of its own.
+pub(crate) trait SurfaceEach: Primitive {
+    /// [`Primitive::surface`] for each of four hits.
+    fn surface_each<L: Lanes>(
+        lanes: L,
+        shapes: [&Self; 4],
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    );
+}
 
 /// Any of the shapes: a closed set, so that a test costs a jump rather than a call through a table.
 #[derive(Clone, Debug)]

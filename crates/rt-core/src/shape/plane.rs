@@ -247,6 +247,23 @@ mod tests {
         }
     }
 
+    /// A sum that is infinite is not seen to cancel: a ray with an infinite coordinate hits nothing all the same, in any interval.
+    #[test]
+    fn infinite_rays_hit_nothing() {
+        let plane = Plane::new([0.5, 0.25, 0.0], [0.3, 1.0, -0.2]).unwrap();
+        let ends = [f64::NEG_INFINITY, -1e300, -1e-100, -0.0, 0.0, 1e-100, 1e300, f64::INFINITY];
+        for coordinate in 0..6 {
+            for infinite in [f64::INFINITY, f64::NEG_INFINITY] {
+                let mut ray = Ray::new([-1.7e28, 2.2, -1.6e-3], [-5.4e2, -2.7, 0.3]);
+                let of = if coordinate < 3 { &mut ray.origin } else { &mut ray.direction };
+                of[coordinate % 3] = infinite;
+                for within in ends.iter().flat_map(|&min| ends.map(|max| Interval::new(min, max))) {
+                    assert_eq!(plane.hit(&ray, within), None, "{ray:?} {within:?}");
+                }
+            }
+        }
+    }
+
     /// What a glance tells of a parameter and an interval is what the careful way says, and it tells all but ends beside the
     /// parameter and intervals that begin behind the origin.
     #[test]

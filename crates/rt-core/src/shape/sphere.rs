@@ -5,6 +5,7 @@
 //! discriminant is a difference of lengths there (Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
 //! Tracing Gems, 2019, chapter 7, doi:10.1007/978-1-4842-4427-2_7); and what is still in doubt is left to double-double.
 
+use super::SurfaceEach;
 use super::paired::Paired;
 use crate::double::Double;
 use crate::double_vector::DoubleVector;
@@ -74,44 +75,6 @@ impl Sphere {
         let point = local.plus_f64(self.center);
         Surface::new(t, point, local.high(), local.high() / self.radius, error_radius(point, error))
             .with_coordinates(Coordinates::Globe)
-    }
-
-    /// The records of four hits, each with a sphere of its own: [`Primitive::surface`] for each.
-    #[inline(always)]
-    pub(crate) fn surface_each<L: Lanes>(
-        lanes: L,
-        spheres: [&Sphere; 4],
-        rays: [&Ray; 4],
-        hits: [Hit; 4],
-        surfaces: [&mut Surface; 4],
-    ) {
-        let radius = Four::new(lanes, spheres.map(|sphere| sphere.radius));
-        let square = Four::new(lanes, spheres.map(|sphere| sphere.square));
-        let center = Vector::new(lanes, spheres.map(|sphere| &sphere.center));
-        let d = Vector::new(lanes, rays.map(|ray| &ray.direction));
-        let relative = DoubleVector::difference(Vector::new(lanes, rays.map(|ray| &ray.origin)), center);
-        let high = Four::new(lanes, hits.map(|hit| hit.t()));
-        let side = Four::new(lanes, hits.map(|hit| side_of(hit.root())));
-        // The lanes bring their own products.
-        let step = Step::new::<Dekker>(&relative, d, radius, Double { high, low: high.all(0.0) }, side);
-        let sound = step.sound
-            & step.small
-            & high.all(0.0).less(square)
-            & relative.leading().largest().less(high.all(exp2i(30)) * radius)
-            & plain_lanes(d);
-        let local = step.place.nudged(d, step.change);
-        let (point, local) = (local.plus(center), local.leading());
-        let normal = local / radius;
-        let error = radius_about(point, high.all(OFF) * radius).to_array();
-        let (t, point) = (step.t.high.to_array(), point.to_array());
-        let (local, normal) = (local.to_array(), normal.to_array());
-        for (i, surface) in surfaces.into_iter().enumerate() {
-            if sound >> i & 1 == 0 {
-                *surface = spheres[i].surface(rays[i], hits[i]);
-                continue;
-            }
-            surface.set(t[i], point[i], local[i], local[i], normal[i], Coordinates::Globe, error[i]);
-        }
     }
 
     /// [`Primitive::surface`] where the short way is not certain.
@@ -578,6 +541,45 @@ impl Primitive for Sphere {
     fn crossings_leaving(&self, ray: &Ray, within: Interval, from: &Departure, each: &mut dyn FnMut(Hit)) {
         if let Some(exit) = self.hit_leaving(ray, within, from) {
             each(exit);
+        }
+    }
+}
+
+impl SurfaceEach for Sphere {
+    #[inline(always)]
+    fn surface_each<L: Lanes>(
+        lanes: L,
+        spheres: [&Self; 4],
+        rays: [&Ray; 4],
+        hits: [Hit; 4],
+        surfaces: [&mut Surface; 4],
+    ) {
+        let radius = Four::new(lanes, spheres.map(|sphere| sphere.radius));
+        let square = Four::new(lanes, spheres.map(|sphere| sphere.square));
+        let center = Vector::new(lanes, spheres.map(|sphere| &sphere.center));
+        let d = Vector::new(lanes, rays.map(|ray| &ray.direction));
+        let relative = DoubleVector::difference(Vector::new(lanes, rays.map(|ray| &ray.origin)), center);
+        let high = Four::new(lanes, hits.map(|hit| hit.t()));
+        let side = Four::new(lanes, hits.map(|hit| side_of(hit.root())));
+        // The lanes bring their own products.
+        let step = Step::new::<Dekker>(&relative, d, radius, Double { high, low: high.all(0.0) }, side);
+        let sound = step.sound
+            & step.small
+            & high.all(0.0).less(square)
+            & relative.leading().largest().less(high.all(exp2i(30)) * radius)
+            & plain_lanes(d);
+        let local = step.place.nudged(d, step.change);
+        let (point, local) = (local.plus(center), local.leading());
+        let normal = local / radius;
+        let error = radius_about(point, high.all(OFF) * radius).to_array();
+        let (t, point) = (step.t.high.to_array(), point.to_array());
+        let (local, normal) = (local.to_array(), normal.to_array());
+        for (i, surface) in surfaces.into_iter().enumerate() {
+            if sound >> i & 1 == 0 {
+                *surface = spheres[i].surface(rays[i], hits[i]);
+                continue;
+            }
+            surface.set(t[i], point[i], local[i], local[i], normal[i], Coordinates::Globe, error[i]);
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::double_vector::DoubleVector;
 use crate::kernel::{Dekker, Four, Lanes, Product, Real, Task, Vector, run};
 use crate::math::{exp2i, sqrt};
 use crate::scaled::{ScaledFour, ScaledRay, largest, radius_about, times_power};
+use crate::shape::SurfaceEach;
 use crate::surface::Coordinates;
 use crate::{Hit, Primitive, Ray, Surface};
 use glam::DVec2;
@@ -86,12 +87,11 @@ impl Direct<'_> {
     }
 }
 
-impl Torus {
-    /// The records of four hits, each with a torus of its own: [`surface`](crate::Primitive::surface) for each.
+impl SurfaceEach for Torus {
     #[inline(always)]
-    pub(crate) fn surface_each<L: Lanes>(
+    fn surface_each<L: Lanes>(
         lanes: L,
-        tori: [&Torus; 4],
+        tori: [&Self; 4],
         rays: [&Ray; 4],
         hits: [Hit; 4],
         surfaces: [&mut Surface; 4],
