@@ -1,7 +1,7 @@
 //! Many rays at once: packets of those that go side by side, the others interleaved. The answers are the same bits as
 //! one by one: the ways differ only in which boxes they pass over.
 
-use super::frame::{PACKET, Side, Window};
+use super::frame::{PACKET, Side};
 use super::order::{Place, put_together};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
@@ -25,7 +25,7 @@ pub(super) const IN_FLIGHT: usize = 12;
 trait Request {
     type Query: Query + Together;
     type Answer;
-    fn query(within: Interval, window: Window, skip: Option<u32>) -> Self::Query;
+    fn query(within: Interval, skip: Option<u32>) -> Self::Query;
     /// The answer when the ray cannot hit anything.
     fn nothing() -> Self::Answer;
     fn answer(geometry: &Geometry, ray: &Ray, query: &Self::Query) -> Self::Answer;
@@ -46,8 +46,8 @@ impl Request for NearestRequest {
     type Query = Nearest;
     type Answer = Option<Found>;
     #[inline(always)]
-    fn query(within: Interval, window: Window, skip: Option<u32>) -> Nearest {
-        Nearest::new(within, window, skip)
+    fn query(within: Interval, skip: Option<u32>) -> Nearest {
+        Nearest::new(within, skip)
     }
     #[inline(always)]
     fn nothing() -> Option<Found> {
@@ -55,7 +55,7 @@ impl Request for NearestRequest {
     }
     #[inline(always)]
     fn answer(geometry: &Geometry, ray: &Ray, query: &Nearest) -> Option<Found> {
-        match query.contested() {
+        match query.contested(|| geometry.frame.window(ray)) {
             None => query.best(),
             Some(limit) => geometry.decide(ray, query.within(), limit, None),
         }
@@ -78,7 +78,7 @@ impl Request for AnyRequest {
     type Query = Any;
     type Answer = bool;
     #[inline(always)]
-    fn query(within: Interval, _: Window, skip: Option<u32>) -> Any {
+    fn query(within: Interval, skip: Option<u32>) -> Any {
         Any::new(within, skip)
     }
     #[inline(always)]
@@ -91,7 +91,10 @@ impl Request for AnyRequest {
     }
     #[inline(always)]
     fn one<L: Lanes>(lanes: L, geometry: &Geometry, ray: &Ray, within: Interval, skip: Option<u32>) -> bool {
-        is_legal(ray, within) && geometry.any(lanes, ray, within, skip)
+        match geometry.frame.legal(lanes, ray, within) {
+            Some(legal) => geometry.any(lanes, ray, within, legal, skip),
+            None => false,
+        }
     }
 }
 
@@ -136,7 +139,7 @@ fn block<R: Request, L: Lanes>(
         rays,
         tile: Tile::line(0, 0),
         side: Side::EMPTY,
-        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), Window::default(), None)),
+        queries: core::array::from_fn(|_| R::query(Interval::new(0.0, 0.0), None)),
         active: 0,
         rings: Rings::NONE,
     };
@@ -173,20 +176,18 @@ fn block<R: Request, L: Lanes>(
         }
         return;
     }
-    // The next ray that has to go down the tree; those before it are answered.
+    // The next ray that may hit more; those before it are answered.
     let answers = core::cell::RefCell::new(answers);
     let next = || {
         for number in numbers.by_ref() {
             let (ray, within) = (&rays[number], within[number]);
             let mut nothing = R::nothing();
             if is_legal(ray, within) {
-                let (local, window) = geometry.frame.enter(ray, within);
-                let mut query = R::query(within, window, skip.get(number).copied());
-                let seen = geometry.ask_apart(ray, &mut query).is_break();
-                match local {
-                    Some(local) if !seen => return Some((number, ray, local, query)),
-                    _ => nothing = R::answer(geometry, ray, &query),
+                let mut query = R::query(within, skip.get(number).copied());
+                if geometry.ask_apart(ray, &mut query).is_continue() {
+                    return Some((number, ray, within, query));
                 }
+                nothing = R::answer(geometry, ray, &query);
             }
             answers.borrow_mut()[number] = nothing;
         }
@@ -212,8 +213,7 @@ fn enter<R: Request, L: Lanes>(
         packet.active = ((1_u64 << tile.count) - 1) as u32;
         for (i, query) in packet.queries.iter_mut().enumerate().take(tile.count) {
             let number = tile.place(i);
-            let absolute = packet.side.window[i];
-            *query = R::query(within[number], Window { absolute }, skip.get(number).copied());
+            *query = R::query(within[number], skip.get(number).copied());
         }
         if geometry.apart.is_empty() {
             return;
@@ -237,9 +237,9 @@ fn enter<R: Request, L: Lanes>(
         if !is_legal(ray, *within) {
             continue;
         }
-        let (local, window) = geometry.frame.enter(ray, *within);
+        let local = geometry.frame.enter(ray, *within);
         let query = &mut packet.queries[i];
-        *query = R::query(*within, window, skip.get(number).copied());
+        *query = R::query(*within, skip.get(number).copied());
         let seen = geometry.ask_apart(ray, query).is_break();
         match local {
             Some(local) if !seen => {

@@ -16,7 +16,7 @@
 //! `2^-10 S` and of the object's size; with a depth of at least 2^-20 S on the face that is far less than the margin, and
 //! where a corner is less deep, the box alone counts.
 
-use super::frame::Windows;
+use super::frame::{Window, Windows};
 use super::outline::{Face, Outline};
 use super::query::{Nearest, Path, Query, Screen};
 use super::rings::AskFour;
@@ -286,7 +286,7 @@ impl Geometry {
         let square = ray.direction.dot(ray.direction);
         let length = if moderate(square) { sqrt(square) } else { f64::INFINITY };
         let mut found = None;
-        let nearest = Nearest::new(within, cube.windows.of(ray.direction), None);
+        let nearest = (Nearest::new(within, None), cube.windows.of(ray.direction));
         self.nearest_seen(cube, ray, nearest, length, cube.seen(ray.direction), &mut found);
         found
     }
@@ -301,7 +301,7 @@ impl Geometry {
         &self,
         cube: &DirectionCube,
         ray: &Ray,
-        mut nearest: Nearest,
+        (mut nearest, window): (Nearest, Window),
         length: f64,
         mut rest: u64,
         found: &mut Option<Found>,
@@ -314,7 +314,7 @@ impl Geometry {
                 break;
             };
             // The others are further still.
-            if distance > nearest.limit() * length {
+            if distance > nearest.limit(window) * length {
                 break;
             }
             if let Some(shape) = self.shapes.get(object as usize) {
@@ -322,7 +322,7 @@ impl Geometry {
             }
         }
         *found = nearest.best();
-        if let Some(limit) = nearest.contested() {
+        if let Some(limit) = nearest.contested(|| window) {
             *found = self.decide(ray, nearest.within(), limit, None);
         }
     }
@@ -571,7 +571,7 @@ impl Vectorized for SeenMany<'_> {
             let length = square.sqrt().to_array();
             let (square, mut seen) = (square.to_array(), cube.seen_four(direction));
             if (seen[0] | seen[1] | seen[2] | seen[3]) & cube.rings != 0 && within.len() == 4 {
-                let mut nearest = [0, 1, 2, 3].map(|i| Nearest::new(within[i], windows[i], None));
+                let mut nearest = [0, 1, 2, 3].map(|i| Nearest::new(within[i], None));
                 let mut members = valid;
                 for (i, within) in within.iter().enumerate() {
                     members &= !(u32::from(!(within.min >= 0.0 && within.min < within.max)) << i);
@@ -580,7 +580,7 @@ impl Vectorized for SeenMany<'_> {
                 for (i, (ray, found)) in rays.iter().zip(found).enumerate() {
                     if members >> i & 1 == 1 {
                         let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
-                        geometry.nearest_seen(cube, ray, nearest[i], length, seen[i], found);
+                        geometry.nearest_seen(cube, ray, (nearest[i], windows[i]), length, seen[i], found);
                     } else {
                         *found = geometry.nearest(ray, within[i]);
                     }
@@ -590,7 +590,7 @@ impl Vectorized for SeenMany<'_> {
             for (i, ((ray, within), found)) in rays.iter().zip(within).zip(found).enumerate() {
                 if valid >> i & 1 == 1 && within.min >= 0.0 && within.min < within.max {
                     let length = if moderate(square[i]) { length[i] } else { f64::INFINITY };
-                    let nearest = Nearest::new(*within, windows[i], None);
+                    let nearest = (Nearest::new(*within, None), windows[i]);
                     geometry.nearest_seen(cube, ray, nearest, length, seen[i], found);
                 } else {
                     *found = geometry.nearest(ray, *within);

@@ -5,8 +5,9 @@
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
 //! direction to `max |d_i|` in [1, 2).
 
+use super::course::Moderate;
 use super::tile::Tile;
-use crate::kernel::{Four, Lanes, Real, at_least, at_most};
+use crate::kernel::{Four, Lanes, Real, at_least, at_most, outward_step};
 use crate::math::{exp2i, exponent};
 use crate::scaled::largest;
 use crate::{Aabb, Interval, Ray};
@@ -17,7 +18,7 @@ use glam::DVec3;
 const U: f64 = exp2i(-53);
 
 /// The absolute part of a [`Window`] for an origin at zero, in kernel coordinates.
-const WINDOW: f64 = exp2i(-24);
+pub(super) const WINDOW: f64 = exp2i(-24);
 
 /// Origins farther away than this, in kernel coordinates, are not followed: they are known to less than 2^-13 of the scene.
 const FARTHEST: f64 = exp2i(40);
@@ -29,6 +30,8 @@ pub(super) struct Frame {
     exponent: i32,
     /// Whether any shape is bounded.
     inhabited: bool,
+    /// The same for rays of which nothing is extreme, if nothing about the frame is.
+    pub moderate: Option<Moderate>,
 }
 
 /// A ray in kernel coordinates, begun where it enters the scene.
@@ -37,13 +40,15 @@ pub(super) struct LocalRay {
     /// The start, known within `error` in each coordinate.
     pub origin: DVec3,
     pub error: f64,
+    /// How far the slabs of boxes are moved outward for it.
+    pub step: f64,
     /// Exact, the largest coordinate in [1, 2).
     pub direction: DVec3,
     /// One by each coordinate of it, within a rounding; infinite where that is beyond the range.
     pub inverse: DVec3,
-    factor: f64,
+    pub factor: f64,
     /// Less the start, and more by three times what is absolute of a window, in kernel coordinates.
-    shift: f64,
+    pub shift: f64,
 }
 
 impl LocalRay {
@@ -159,7 +164,7 @@ impl Frame {
         }
         // A spare factor of 2 leaves room for the rounding of these differences.
         let exponent = (exponent(reach.max_element()) + 2).clamp(-962, 964);
-        Frame { center, exponent, inhabited }
+        Frame { center, exponent, inhabited, moderate: Moderate::new(center, exponent) }
     }
 
     /// The box in kernel coordinates, rounded outward: by twice what a rounding to `f32` can lose, which leaves much for the
@@ -175,20 +180,27 @@ impl Frame {
         )
     }
 
-    /// The windows of ties that [`enter`](Frame::enter) gives for valid rays from this point.
+    /// The window of ties of a valid ray.
+    #[inline(always)]
+    pub fn window(&self, ray: &Ray) -> Window {
+        self.windows(ray.origin).of(ray.direction)
+    }
+
+    /// The windows of ties of valid rays from this point.
+    #[inline(always)]
     pub fn windows(&self, origin: DVec3) -> Windows {
         let far = largest((origin - self.center) * exp2i(-self.exponent));
         let far = if self.inhabited && far < FARTHEST { Some((far + 1.0) * WINDOW) } else { None };
         Windows { exponent: self.exponent, far }
     }
 
-    /// The ray in kernel coordinates and the window of its ties; no ray when it misses the box of the scene.
+    /// The ray in kernel coordinates; none when it misses the box of the scene.
     ///
     /// The ray must be valid and the interval not empty.
     #[inline(always)]
-    pub fn enter(&self, ray: &Ray, within: Interval) -> (Option<LocalRay>, Window) {
+    pub fn enter(&self, ray: &Ray, within: Interval) -> Option<LocalRay> {
         if !self.inhabited {
-            return (None, Window { absolute: 0.0 });
+            return None;
         }
         // First, as nothing that follows takes as long.
         let inverse = 1.0 / ray.direction;
@@ -196,7 +208,7 @@ impl Frame {
         let power = direction_exponent - self.exponent;
         // Not for directions that are not normal numbers or whose reciprocal is none, nor for parameters that would overflow.
         if !(is_middling(direction_exponent) && is_middling(power)) {
-            return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
+            return Some(LocalRay::EVERYWHERE);
         }
         let origin = (ray.origin - self.center) * exp2i(-self.exponent);
         let direction = ray.direction * exp2i(-direction_exponent);
@@ -204,19 +216,16 @@ impl Frame {
         let factor = exp2i(power);
         let far = largest(origin);
         if !(far < FARTHEST) {
-            return (Some(LocalRay::EVERYWHERE), Window { absolute: 0.0 });
+            return Some(LocalRay::EVERYWHERE);
         }
         let absolute = (far + 1.0) * WINDOW;
-        let window = Window { absolute: absolute * exp2i(-power) };
         // A raw `t` may exceed the interval's end by its error where the true one does not: the ray begins before it.
         if within.min == 0.0 && far <= 8.0 {
             // By `absolute`, which is less than 2 `absolute` in a coordinate: the error takes it. The origin itself, rounded once, is
             // known to 8 u = 2^-50.
             let error = absolute * 2.0 + exp2i(-48);
-            return (
-                Some(LocalRay { origin, error, direction, inverse, factor, shift: 3.0 * absolute }),
-                window,
-            );
+            let step = outward_step(error, far);
+            return Some(LocalRay { origin, error, step, direction, inverse, factor, shift: 3.0 * absolute });
         }
         let mut start = within.min * factor - absolute;
         if !(start.abs() * 2.0 + far <= 8.0) {
@@ -232,23 +241,27 @@ impl Frame {
                     start = if a > start { a } else { start };
                     exit = if b < exit { b } else { exit };
                 } else if o.abs() > room {
-                    return (None, window);
+                    return None;
                 }
             }
             if start > exit {
-                return (None, window);
+                return None;
             }
         }
         // Each coordinate runs by less than 2 |start|.
+        let reach = far + 2.0 * start.abs();
+        let error = reach * (8.0 * U) + exp2i(-97);
+        let origin = origin + direction * start;
         let local = LocalRay {
-            origin: origin + direction * start,
-            error: (far + 2.0 * start.abs()) * (8.0 * U) + exp2i(-97),
+            origin,
+            error,
+            step: outward_step(error, largest(origin)),
             direction,
             inverse,
             factor,
             shift: 3.0 * absolute - start,
         };
-        (Some(local), window)
+        Some(local)
     }
 }
 
@@ -269,8 +282,6 @@ pub(super) struct Side {
     /// As in [`LocalRay`].
     pub factor: [f64; PACKET],
     pub shift: [f64; PACKET],
-    /// The windows of ties.
-    pub window: [f64; PACKET],
     /// An error radius for all.
     pub error: f64,
 }
@@ -282,7 +293,6 @@ impl Side {
         limit: [[0.0; 8]; GROUPS],
         factor: [0.0; PACKET],
         shift: [0.0; PACKET],
-        window: [0.0; PACKET],
         error: 0.0,
     };
 
@@ -400,8 +410,7 @@ impl Frame {
             side.limit[group][lane..lane + 4].copy_from_slice(&lanes.round4(limit));
             let place = 4 * four..4 * four + 4;
             side.factor[place.clone()].copy_from_slice(&lanes.store4(factor));
-            side.shift[place.clone()].copy_from_slice(&lanes.store4(shift));
-            side.window[place].copy_from_slice(&lanes.store4(lanes.div4(absolute, factor)));
+            side.shift[place].copy_from_slice(&lanes.store4(shift));
         }
         // At most 8 and 2 * 4 in each coordinate.
         side.error = 3.0 * (16.0 * (8.0 * U) + exp2i(-97));
@@ -417,6 +426,7 @@ impl LocalRay {
     pub const EVERYWHERE: LocalRay = LocalRay {
         origin: DVec3::ZERO,
         error: exp2i(100),
+        step: outward_step(exp2i(100), 0.0),
         direction: DVec3::ONE,
         inverse: DVec3::ONE,
         factor: 1.0,
@@ -459,11 +469,9 @@ mod tests {
             let bounds = Aabb::new(DVec3::splat(-size), DVec3::splat(size));
             let frame = Frame::around(1, [Some(bounds)].into_iter());
             let ray = Ray::new([0.0, 0.0, -3.0 * size], DVec3::new(0.0, 0.25, 1.0) * speed);
-            let (local, window) = frame.enter(&ray, Interval::FORWARD);
-            let local = local.unwrap();
+            let (local, window) = (frame.enter(&ray, Interval::FORWARD).unwrap(), frame.window(&ray));
             assert_eq!(local.shift.is_finite(), followed, "{size:e} {speed:e}");
             assert_eq!(window.absolute > 0.0, followed);
-            assert_eq!(frame.windows(ray.origin).of(ray.direction).absolute, window.absolute);
             let largest = Four::new(crate::kernel::PortableLanes, [1.0, largest(ray.direction), 0.0, speed]);
             let four = frame.windows(ray.origin).of_four(largest).map(|window| window.absolute);
             assert_eq!((four[1], four[2], four[3]), (window.absolute, 0.0, window.absolute));
@@ -479,6 +487,7 @@ mod tests {
         let of = |i: usize, error: f64| LocalRay {
             origin: DVec3::new(0.5, -0.25, 0.125) * (1 + i) as f64,
             error,
+            step: 2.0 * error,
             direction: DVec3::new(1.0, -0.5, 1.5) / (1 + i) as f64,
             inverse: DVec3::new(1.0, -2.0, 0.5) * (1 + i) as f64,
             factor: (2 + i) as f64,
@@ -547,7 +556,8 @@ mod tests {
             let ray = Ray::new(origin, direction);
             // From zero, and from elsewhere.
             let least = if case % 2 == 0 { 0.0 } else { f64::MIN_POSITIVE };
-            let (local, window) = frame.enter(&ray, Interval::new(least, f64::INFINITY));
+            let (local, window) =
+                (frame.enter(&ray, Interval::new(least, f64::INFINITY)), frame.window(&ray));
             if beyond > 1.0 + exp2i(-9) {
                 none += u32::from(local.is_none());
                 continue;
@@ -581,8 +591,6 @@ mod tests {
             }
             let absolute = (far + 1.0) * WINDOW / local.factor;
             assert!((window.absolute / absolute - 1.0).abs() < 1e-9);
-            let same = frame.windows(origin).of(direction).absolute;
-            assert!(same.to_bits() == window.absolute.to_bits(), "{same} {window:?}");
         }
         assert!(none > 1000 && some > 2600, "{none} {some}");
     }

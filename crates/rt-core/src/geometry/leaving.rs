@@ -1,7 +1,7 @@
 //! The nearest hits of many rays that leave surfaces.
 
 use super::batch::IN_FLIGHT;
-use super::frame::{PACKET, Window};
+use super::frame::PACKET;
 use super::query::{Nearest, Query};
 use super::rings::{Rings, Settle, settle};
 use super::store::{Run, Store};
@@ -45,32 +45,27 @@ impl Vectorized for LeaveMany<'_> {
         for (.., found) in all {
             *found = None;
         }
-        let found = core::cell::RefCell::new(found);
         let mut numbers = 0..rays.len();
-        // The next ray that has to go down the tree; those before it are answered.
+        // The next legal ray; those before it hit nothing.
         let next = || {
             for number in numbers.by_ref() {
                 let (ray, within, from) = (&rays[number], within[number], &from[number]);
                 if !is_legal(ray, within) {
                     continue;
                 }
-                let (local, window) = geometry.frame.enter(ray, within);
-                let mut nearest = Nearest::new(within, window, Some(from.object));
+                let mut nearest = Nearest::new(within, Some(from.object));
                 if let Some((from, shape)) = geometry.departed(Some(from))
                     && let Some(hit) = shape.hit_leaving(ray, within, from)
                 {
                     nearest.offer(from.object, hit);
                 }
                 let _ = geometry.ask_apart(ray, &mut nearest);
-                match local {
-                    Some(local) => return Some((number, ray, local, nearest)),
-                    None => found.borrow_mut()[number] = decided(geometry, ray, &nearest, from),
-                }
+                return Some((number, ray, within, nearest));
             }
             None
         };
         interleave::<IN_FLIGHT, L, Nearest>(lanes, geometry, next, |number, nearest| {
-            found.borrow_mut()[number] = decided(geometry, &rays[number], &nearest, &from[number]);
+            found[number] = decided(geometry, &rays[number], &nearest, &from[number]);
         });
     }
 }
@@ -85,25 +80,22 @@ fn defer_tori<L: Lanes>(
     from: &[Departure],
     found: &mut [Option<Found>],
 ) {
-    let mut queries = [Nearest::new(Interval::new(0.0, 0.0), Window::default(), None); PACKET];
+    let mut queries = [Nearest::new(Interval::new(0.0, 0.0), None); PACKET];
     let mut rings = Rings::NONE;
     let (store, tile) = (&geometry.store, Tile::line(0, rays.len()));
     let ask_about = |rings: &mut Rings, queries: &mut [Nearest; PACKET], all| {
         settle(Settle { rings, store, rays, tile, queries, all });
     };
     for (place, ((ray, within), from)) in rays.iter().zip(within).zip(from).enumerate() {
-        if !is_legal(ray, *within) {
-            continue;
-        }
-        let (local, window) = geometry.frame.enter(ray, *within);
-        let mut nearest = Nearest::new(*within, window, Some(from.object));
+        let Some(legal) = geometry.frame.legal(lanes, ray, *within) else { continue };
+        let mut nearest = Nearest::new(*within, Some(from.object));
         if let Some((from, shape)) = geometry.departed(Some(from))
             && let Some(hit) = shape.hit_leaving(ray, *within, from)
         {
             nearest.offer(from.object, hit);
         }
         let mut query = Deferring { nearest, rings: &mut rings, place };
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
+        let _ = geometry.ask(lanes, ray, *within, legal, &mut query);
         queries[place] = query.nearest;
         if rings.are_many() {
             ask_about(&mut rings, &mut queries, false);
@@ -146,7 +138,7 @@ impl Query for Deferring<'_> {
 
 #[inline(always)]
 fn decided(geometry: &Geometry, ray: &Ray, nearest: &Nearest, from: &Departure) -> Option<Found> {
-    match nearest.contested() {
+    match nearest.contested(|| geometry.frame.window(ray)) {
         None => nearest.best(),
         Some(limit) => geometry.decide(ray, nearest.within(), limit, Some(from)),
     }

@@ -14,6 +14,7 @@
 
 mod batch;
 mod builder;
+mod course;
 mod cube;
 mod frame;
 mod leaving;
@@ -35,8 +36,9 @@ use crate::{Aabb, Departure, Hit, Interval, Primitive, Ray, Shape, Surface};
 use alloc::vec::Vec;
 use builder::Item;
 use core::ops::ControlFlow;
+use course::Legal;
 pub use cube::{DirectionCube, Way};
-use frame::{Frame, LocalRay};
+use frame::Frame;
 pub use query::Screen;
 use query::{Any, Contest, Crossings, Nearest, Path, Query};
 use store::{Run, Store};
@@ -245,7 +247,8 @@ impl Geometry {
         &self,
         lanes: L,
         ray: &Ray,
-        local: Option<&LocalRay>,
+        within: Interval,
+        legal: Legal,
         query: &mut Q,
     ) -> ControlFlow<()> {
         if self.plain {
@@ -254,19 +257,19 @@ impl Geometry {
             }
             return ControlFlow::Continue(());
         }
+        // These first: numbers made ready before would not stay in registers.
         self.ask_apart(ray, query)?;
-        match local {
-            Some(local) => traverse(lanes, &self.tree, &self.store, ray, local, query),
+        match self.frame.course(lanes, ray, within, legal) {
+            Some(course) => traverse(lanes, &self.tree, &self.store, ray, &course, query),
             None => ControlFlow::Continue(()),
         }
     }
 
-    /// Whether a ray, which must be legal, hits any object but one.
+    /// Whether a ray hits any object but one.
     #[inline(always)]
-    fn any<L: Lanes>(&self, lanes: L, ray: &Ray, within: Interval, skip: Option<u32>) -> bool {
+    fn any<L: Lanes>(&self, lanes: L, ray: &Ray, within: Interval, legal: Legal, skip: Option<u32>) -> bool {
         let mut any = Any::new(within, skip);
-        let local = self.frame.enter(ray, within).0;
-        let _ = self.ask(lanes, ray, local.as_ref(), &mut any);
+        let _ = self.ask(lanes, ray, within, legal, &mut any);
         any.found
     }
 
@@ -341,18 +344,15 @@ impl Vectorized for FindNearest<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
         let FindNearest { geometry, ray, within, from } = self;
-        if !is_legal(ray, within) {
-            return None;
-        }
-        let (local, window) = geometry.frame.enter(ray, within);
-        let mut nearest = Nearest::new(within, window, from.map(|from| from.object));
+        let legal = geometry.frame.legal(lanes, ray, within)?;
+        let mut nearest = Nearest::new(within, from.map(|from| from.object));
         if let Some((from, shape)) = geometry.departed(from)
             && let Some(hit) = shape.hit_leaving(ray, within, from)
         {
             nearest.offer(from.object, hit);
         }
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut nearest);
-        match nearest.contested() {
+        let _ = geometry.ask(lanes, ray, within, legal, &mut nearest);
+        match nearest.contested(|| geometry.frame.window(ray)) {
             None => nearest.best(),
             Some(limit) => geometry.decide(ray, within, limit, from),
         }
@@ -372,6 +372,8 @@ impl Vectorized for Decide<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Option<Found> {
         let Decide { geometry, ray, within, limit, from } = self;
+        let before = within.until(limit);
+        let legal = geometry.frame.legal(lanes, ray, before)?;
         let mut contest = Contest::new(within, limit, from.map(|from| from.object));
         if let Some((from, shape)) = geometry.departed(from)
             && let Some(hit) = shape.hit_leaving(ray, within, from)
@@ -379,8 +381,7 @@ impl Vectorized for Decide<'_> {
         {
             contest.offer(ray, from.object, shape, hit);
         }
-        let local = geometry.frame.enter(ray, within.until(limit)).0;
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut contest);
+        let _ = geometry.ask(lanes, ray, before, legal, &mut contest);
         contest.winner()
     }
 }
@@ -397,15 +398,13 @@ impl Vectorized for FindAny<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> bool {
         let FindAny { geometry, ray, within, from } = self;
-        if !is_legal(ray, within) {
-            return false;
-        }
+        let Some(legal) = geometry.frame.legal(lanes, ray, within) else { return false };
         if let Some((from, shape)) = geometry.departed(from)
             && shape.hit_leaving(ray, within, from).is_some()
         {
             return true;
         }
-        geometry.any(lanes, ray, within, from.map(|from| from.object))
+        geometry.any(lanes, ray, within, legal, from.map(|from| from.object))
     }
 }
 
@@ -422,16 +421,13 @@ impl Vectorized for FindPath<'_> {
     fn run<L: Lanes>(self, lanes: L) -> bool {
         let FindPath { geometry, ray, from, mut path } = self;
         let within = path.within;
-        if !is_legal(ray, within) {
-            return false;
-        }
+        let Some(legal) = geometry.frame.legal(lanes, ray, within) else { return false };
         if let Some(from) = from
             && path.leave(geometry, ray, from.object, || *from).is_break()
         {
             return true;
         }
-        let local = geometry.frame.enter(ray, within).0;
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut path);
+        let _ = geometry.ask(lanes, ray, within, legal, &mut path);
         path.blocked
     }
 }
@@ -448,16 +444,13 @@ impl Vectorized for FindCrossings<'_> {
     fn run<L: Lanes>(self, lanes: L) {
         let FindCrossings { geometry, ray, mut query } = self;
         let within = query.within;
-        if !is_legal(ray, within) {
-            return;
-        }
+        let Some(legal) = geometry.frame.legal(lanes, ray, within) else { return };
         if let Some((from, shape)) = geometry.departed(query.from) {
             let crossings = |each: &mut dyn FnMut(Hit)| shape.crossings_leaving(ray, within, from, each);
             if query::report(from.object, query.each, crossings).is_break() {
                 return;
             }
         }
-        let local = geometry.frame.enter(ray, within).0;
-        let _ = geometry.ask(lanes, ray, local.as_ref(), &mut query);
+        let _ = geometry.ask(lanes, ray, within, legal, &mut query);
     }
 }

@@ -31,7 +31,6 @@ pub(super) struct Nearest {
     within: Interval,
     /// The parameter of the best hit, or the end of the interval.
     end: f64,
-    window: Window,
     skip: Option<u32>,
     best: Option<Found>,
     /// The least parameter of all other objects seen.
@@ -40,8 +39,8 @@ pub(super) struct Nearest {
 
 impl Nearest {
     #[inline(always)]
-    pub fn new(within: Interval, window: Window, skip: Option<u32>) -> Self {
-        Nearest { within, end: within.max, window, skip, best: None, runner_up: f64::INFINITY }
+    pub fn new(within: Interval, skip: Option<u32>) -> Self {
+        Nearest { within, end: within.max, skip, best: None, runner_up: f64::INFINITY }
     }
 
     /// What every shape is asked about.
@@ -66,10 +65,10 @@ impl Nearest {
         }
     }
 
-    /// Hits from this parameter on do not matter any more.
+    /// Hits from this parameter on do not matter any more, with the window of ties that the ray has.
     #[inline(always)]
-    pub fn limit(&self) -> f64 {
-        self.window.limit(self.end).min(self.within.max)
+    pub fn limit(&self, window: Window) -> f64 {
+        window.limit(self.end).min(self.within.max)
     }
 
     /// What was found, unless that is [contested](Nearest::contested).
@@ -78,14 +77,14 @@ impl Nearest {
         self.best
     }
 
-    /// Where the hits end of which several objects have one, too close for their order to be sure.
+    /// Where the hits end of which several objects have one, too close for their order to be sure. The window is asked for where
+    /// several objects have a hit: most rays meet no other.
     #[inline(always)]
-    pub fn contested(&self) -> Option<f64> {
-        // Most meet no other object: no limit has to be computed.
+    pub fn contested(&self, window: impl FnOnce() -> Window) -> Option<f64> {
         if self.runner_up == f64::INFINITY || self.best.is_none() {
             return None;
         }
-        let limit = self.limit();
+        let limit = self.limit(window());
         (self.runner_up < limit).then_some(limit)
     }
 }

@@ -2,19 +2,18 @@
 //! for memory, others compute.
 
 use super::Geometry;
-use super::frame::LocalRay;
+use super::course::Course;
 use super::query::Query;
 use super::traverse::{STACK, descend, unpack};
 use super::tree::Child;
-use crate::Ray;
-use crate::kernel::{Lanes, Room, SlabRay};
+use crate::kernel::{Lanes, Room};
+use crate::{Interval, Ray};
 
 /// A ray on its way down the tree.
 struct Flight<'a, L: Lanes, Q> {
     ray: &'a Ray,
     number: usize,
-    local: LocalRay,
-    slab: SlabRay<L>,
+    course: Course<L>,
     query: Q,
     limit: f32,
     child: Child,
@@ -23,17 +22,9 @@ struct Flight<'a, L: Lanes, Q> {
 
 impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
     #[inline(always)]
-    fn new(lanes: L, (number, ray, local, query): (usize, &'a Ray, LocalRay, Q)) -> Self {
-        Flight {
-            ray,
-            number,
-            slab: SlabRay::new(lanes, local.origin, local.error, local.inverse),
-            limit: local.limit(query.end()),
-            local,
-            query,
-            child: Child::node(0),
-            room: Room::default(),
-        }
+    fn new(number: usize, ray: &'a Ray, course: Course<L>, query: Q) -> Self {
+        let (limit, child, room) = (course.limit(query.end()), Child::node(0), Room::default());
+        Flight { ray, number, course, query, limit, child, room }
     }
 
     /// Visits one node or leaf and asks for the memory of the next; false at the end.
@@ -45,7 +36,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
                 let tree = &geometry.tree;
                 // Not by `and_then`: a closure that is not inlined is compiled without the instruction set.
                 match tree.nodes.get(index) {
-                    Some(node) => descend(lanes, tree, node, &self.slab, self.limit, &mut stack),
+                    Some(node) => descend(lanes, tree, node, &self.course.slab, self.limit, &mut stack),
                     None => None,
                 }
             }
@@ -53,7 +44,7 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
                 if geometry.store.visit(self.child.run(), self.ray, &mut self.query).is_break() {
                     return false;
                 }
-                self.limit = self.local.limit(self.query.end());
+                self.limit = self.course.limit(self.query.end());
                 None
             }
         };
@@ -82,36 +73,44 @@ impl<'a, L: Lanes, Q: Query> Flight<'a, L, Q> {
     }
 }
 
-/// Takes rays from `next` and down the tree, `N` at a time, and hands each query to `done` with the ray's number.
+/// Takes legal rays from `next` and down the tree, `N` at a time, and hands each query to `done` with the ray's number.
+///
+/// Nothing in either closure may be of the instruction set's: they need not be inlined here, and are then compiled without it.
 #[inline(always)]
 pub(super) fn interleave<'a, const N: usize, L: Lanes, Q: Query>(
     lanes: L,
     geometry: &Geometry,
-    mut next: impl FnMut() -> Option<(usize, &'a Ray, LocalRay, Q)>,
+    mut next: impl FnMut() -> Option<(usize, &'a Ray, Interval, Q)>,
     mut done: impl FnMut(usize, Q),
 ) {
     let mut flights = [const { None::<Flight<L, Q>> }; N];
-    // Not by closures handed on: see `SlabRay::new`.
-    for slot in &mut flights {
-        match next() {
-            Some(start) => *slot = Some(Flight::new(lanes, start)),
-            None => break,
-        }
-    }
-    let mut busy = true;
+    let (mut are_left, mut busy) = (true, true);
     while busy {
         busy = false;
         for slot in &mut flights {
             if let Some(flight) = slot {
-                busy = true;
-                if !flight.advance(lanes, geometry) {
-                    if let Some(Flight { number, query, .. }) = slot.take() {
-                        done(number, query);
-                    }
-                    if let Some(start) = next() {
-                        *slot = Some(Flight::new(lanes, start));
-                    }
+                if flight.advance(lanes, geometry) {
+                    busy = true;
+                    continue;
                 }
+                if let Some(Flight { number, query, .. }) = slot.take() {
+                    done(number, query);
+                }
+            }
+            while are_left {
+                let Some((number, ray, within, query)) = next() else {
+                    are_left = false;
+                    break;
+                };
+                let frame = &geometry.frame;
+                if let Some(legal) = frame.legal(lanes, ray, within)
+                    && let Some(course) = frame.course(lanes, ray, within, legal)
+                {
+                    *slot = Some(Flight::new(number, ray, course, query));
+                    busy = true;
+                    break;
+                }
+                done(number, query);
             }
         }
     }

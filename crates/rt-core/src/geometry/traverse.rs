@@ -1,7 +1,7 @@
 //! One ray down the tree, nearest boxes first.
 
 use super::builder::{MOST_DEPTH, MOST_WITHOUT_TREE};
-use super::frame::LocalRay;
+use super::course::Course;
 use super::query::Query;
 use super::store::Store;
 use super::tree::{Child, Node, Tree};
@@ -81,12 +81,12 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
     tree: &Tree,
     store: &Store,
     ray: &Ray,
-    local: &LocalRay,
+    course: &Course<L>,
     query: &mut Q,
 ) -> ControlFlow<()> {
-    let slab = SlabRay::new(lanes, local.origin, local.error, local.inverse);
+    let slab = &course.slab;
     let mut end = query.end();
-    let mut limit = local.limit(end);
+    let mut limit = course.limit(end);
     let mut room = Room::<STACK>::default();
     let mut stack = room.enter();
     let mut next = None;
@@ -117,7 +117,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
         match child.as_node() {
             Some(index) => {
                 if let Some(node) = tree.nodes.get(index)
-                    && let Some(next) = descend(lanes, tree, node, &slab, limit, &mut stack)
+                    && let Some(next) = descend(lanes, tree, node, slab, limit, &mut stack)
                 {
                     child = next;
                     continue;
@@ -127,7 +127,7 @@ pub(super) fn traverse<L: Lanes, Q: Query>(
                 store.visit(child.run(), ray, query)?;
                 if query.end() != end {
                     end = query.end();
-                    limit = local.limit(end);
+                    limit = course.limit(end);
                 }
             }
         }

@@ -248,6 +248,19 @@ impl Lanes for Avx2Lanes {
         unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a) }
     }
     #[inline(always)]
+    fn copy_sign4(self, a: __m256d, b: __m256d) -> __m256d {
+        // SAFETY: `self` proves AVX2.
+        unsafe {
+            let sign = _mm256_set1_pd(-0.0);
+            _mm256_or_pd(_mm256_andnot_pd(sign, a), _mm256_and_pd(sign, b))
+        }
+    }
+    #[inline(always)]
+    fn signs4(self, a: __m256d) -> u32 {
+        // SAFETY: `self` proves AVX2.
+        unsafe { _mm256_movemask_pd(a) as u32 }
+    }
+    #[inline(always)]
     fn binade4(self, a: __m256d) -> __m256d {
         // SAFETY: `self` proves AVX2.
         unsafe { _mm256_and_pd(a, _mm256_set1_pd(f64::from_bits(EXPONENT))) }

@@ -3,29 +3,26 @@
 //! Box tests run in *kernel coordinates*, in which the scene lies in [-1, 1]: see `geometry::frame`, which makes the
 //! rays. A box test may only cull: it never rejects a box that the exact ray passes through.
 //!
-//! Per axis, the parameters at which the ray enters and leaves the slab are `(x - o) / d`. The origin is known as
-//! `o +- e` with `e >= 2^-97`, `max |d_i|` lies in [1, 2), and `1 / d` is known within a rounding of `f64`. In `f32`, with
-//! v = 2^-24, the test is `x * r + c`:
-//! - The reciprocal `r` is rounded to `f32` after it was made smaller (entry) or larger (exit) in magnitude by the factor
-//!   1 -+ 2^-22 = 1 -+ 4 v. That works in the wrong direction only where the parameter is negative, hence behind the start: there
-//!   the entry counts as 0 anyway, and an exit keeps its sign.
-//! - The origin is moved outward by `e + 4 v (|o| + e)`, to `o'`, and `c = -o' * r` is made of the reciprocal before it was
-//!   rounded, and rounded itself.
-//! - The roundings of `r` and, without fused multiply-add, of the product err by v each of `|x r|`, which is at most
-//!   `|(x - o') r| + |o' r|`, that of `c` by v of `|o' r|`, that of the sum by v of itself: altogether by 3 v of the parameter,
-//!   which the factor 1 -+ 4 v outweighs, and 3 v `|o' r|`, which the step outward does. What is lost in `f64` is far less.
-//! - Results below the normal range err by 2^-150 at most, far less than `e * |r| >= 2^-98` moved them.
-//! - An axis with `|d_i| < 2^-100` is treated as `2^-100`: no reciprocal is more than 2^100. Within the scene a parameter is at
-//!   most about 2, so this moves the ray by less than 2^-98, which `e` covers with as much to spare: the slab rejects if
-//!   `o +- e` lies outside, else its exit is at least `2^-98 * 2^100 = 4`, beyond the scene.
-//! - Hence a positive entry is less than the true one (by v of itself or nearly so), and an exit that is truly at least 0 is
-//!   positive and greater than the true one: where the true ones are in order, these are not equal.
+//! Per axis, the parameters at which the ray enters and leaves the slab of a box are `(x - o) / d`. Both ends are moved outward
+//! by a `step`: `o' = o -+ step`. In `f32`, with v = 2^-24, the test is `x * r + c`, `r` being `1 / d` and `c` being `-o' / d`,
+//! each made in `f64` and rounded to nearest. Errors are told as the distance along the axis that makes the same difference, less by
+//! |1 / d|:
+//! - The roundings of `r` and, without fused multiply-add, of the product: v |x| each, and |x| <= 1.
+//! - That of `c`: v |o'|.
+//! - That of the sum: v |x - o'|, at most v (1 + |o'|).
+//! - What is lost in `f64` before: less than v / 2^20 of the same.
+//! - Altogether less than v (3 + 2 |o'|) (1 + 2^-20). The step is the error radius of `o`, e, and 4 v (1 + |o| + e): more by at
+//!   least v / 2 (1 + |o|). Results below the normal range err by 2^-150 at most: |r| is at least 2^-60, so that is far less.
+//! - Hence an entry is less than the true one, and an exit that is truly at least 0 is positive and greater than the true one: where
+//!   the true ones are in order, these are not equal. A negative entry counts as 0.
+//! - An axis along which the ray moves by less than 2^-100 of what it does along another is treated as if it did by that much. Up to
+//!   the far side of the scene it comes at most 10 along any axis, so this moves it by less than 2^-96, which the step has to spare:
+//!   the slab rejects if `o'` lies outside, else its exit is at least what is spared times 2^100, beyond the scene.
 //! - There is no NaN: origins (at most about 8, see `geometry::frame`), `r` (at most 2^100) and their products are finite,
-//!   and no `r` is 0. Rays that nothing is known of have a large error, not an infinite one. Empty boxes are infinite, and
+//!   and no `r` is 0. Rays that nothing is known of have a large step, not an infinite one. Empty boxes are infinite, and
 //!   so are their entries.
 
 use super::Lanes;
-use glam::DVec3;
 
 /// Eight boxes: the rows are min x, min y, min z, max x, max y, max z.
 #[derive(Clone, Copy, Debug)]
@@ -100,8 +97,12 @@ impl Row {
 /// What a rounding to `f32` can lose, twice.
 const STEP: f64 = crate::math::exp2i(-23);
 
-/// The same, four times.
-const TWO_STEPS: f64 = crate::math::exp2i(-22);
+/// The step by which slabs are moved outward for a ray whose start is known to `error` and lies within `far` of the scene's
+/// centre along each axis, in kernel coordinates.
+pub const fn outward_step(error: f64, far: f64) -> f64 {
+    const FOUR_ROUNDINGS: f64 = crate::math::exp2i(-22);
+    error + (1.0 + far + error) * FOUR_ROUNDINGS
+}
 
 /// An `f32` that is at least `x` and not much more, without branches; for `x` above the subnormal numbers.
 #[inline(always)]
@@ -120,46 +121,37 @@ pub fn at_most(x: f64) -> f32 {
 pub struct SlabRay<L: Lanes> {
     near: [Row; 3],
     far: [Row; 3],
-    near_factor: [L::F; 3],
+    factor: [L::F; 3],
     near_offset: [L::F; 3],
-    far_factor: [L::F; 3],
     far_offset: [L::F; 3],
 }
 
 impl<L: Lanes> SlabRay<L> {
-    /// The ray that starts within `error` of `origin`, by one over its direction.
+    /// The ray by its start and one over its direction, by axis, and how far slabs are moved: see [`outward_step`]. The signs of
+    /// the inverse are also given by themselves, by any numbers that have them: they are wanted first.
     ///
-    /// The axes in lanes, without branches: rounded to nearest after a step outward of 2^-22, twice what that can lose.
+    /// From the inverse to the test there are a product, a rounding and the copy to all lanes: a ray waits for all of that before
+    /// its first node.
     #[inline(always)]
-    pub fn new(lanes: L, origin: DVec3, error: f64, inverse: DVec3) -> Self {
-        const MOST: f64 = crate::math::exp2i(100);
-        const SLACK: f64 = crate::math::exp2i(-22);
-        let origin = lanes.load4([origin.x, origin.y, origin.z, 0.0]);
-        let inverse = lanes.load4([inverse.x, inverse.y, inverse.z, 1.0]);
-        let inverse = lanes.max4(lanes.min4(inverse, lanes.splat4(MOST)), lanes.splat4(-MOST));
-        let back = lanes.lt4(inverse, lanes.splat4(0.0));
-        let error = lanes.splat4(error + error * TWO_STEPS);
-        let outward = lanes.add4(lanes.mul4(lanes.abs4(origin), lanes.splat4(TWO_STEPS)), error);
-        // Parameters at which the origin's coordinates, and the steps outward, are zero: of the entry further on, of the exit
-        // further back.
-        let (zero, outward) = (lanes.mul4(origin, inverse), lanes.mul4(outward, lanes.abs4(inverse)));
-        let (less, more) = (lanes.splat4(1.0 - SLACK), lanes.splat4(1.0 + SLACK));
-        let near = lanes.round4(lanes.mul4(inverse, less));
-        let far = lanes.round4(lanes.mul4(inverse, more));
-        let near_offset = lanes.round4(lanes.mul4(lanes.add4(zero, outward), lanes.splat4(SLACK - 1.0)));
-        let far_offset = lanes.round4(lanes.mul4(lanes.sub4(outward, zero), more));
+    pub fn new(lanes: L, origin: L::D, step: f64, signs: L::D, inverse: L::D) -> Self {
+        let back = lanes.signs4(signs);
+        let step = lanes.copy_sign4(lanes.splat4(step), signs);
+        let near = lanes.neg4(lanes.add4(origin, step));
+        let far = lanes.sub4(step, origin);
+        let factor = lanes.round4(inverse);
+        let near_offset = lanes.round4(lanes.mul4(near, inverse));
+        let far_offset = lanes.round4(lanes.mul4(far, inverse));
         let (x, y, z) = (Row::ends(0, back & 1), Row::ends(1, back >> 1 & 1), Row::ends(2, back >> 2 & 1));
         // No closure makes a register, or anything: one that is not inlined is compiled without the instruction set.
         SlabRay {
             near: [x.0, y.0, z.0],
             far: [x.1, y.1, z.1],
-            near_factor: [lanes.splat(near[0]), lanes.splat(near[1]), lanes.splat(near[2])],
+            factor: [lanes.splat(factor[0]), lanes.splat(factor[1]), lanes.splat(factor[2])],
             near_offset: [
                 lanes.splat(near_offset[0]),
                 lanes.splat(near_offset[1]),
                 lanes.splat(near_offset[2]),
             ],
-            far_factor: [lanes.splat(far[0]), lanes.splat(far[1]), lanes.splat(far[2])],
             far_offset: [lanes.splat(far_offset[0]), lanes.splat(far_offset[1]), lanes.splat(far_offset[2])],
         }
     }
@@ -168,16 +160,8 @@ impl<L: Lanes> SlabRay<L> {
     #[inline(always)]
     fn slab(&self, lanes: L, boxes: &Boxes, axis: usize) -> (L::F, L::F) {
         (
-            lanes.mul_add(
-                lanes.load(boxes.row(self.near[axis])),
-                self.near_factor[axis],
-                self.near_offset[axis],
-            ),
-            lanes.mul_add(
-                lanes.load(boxes.row(self.far[axis])),
-                self.far_factor[axis],
-                self.far_offset[axis],
-            ),
+            lanes.mul_add(lanes.load(boxes.row(self.near[axis])), self.factor[axis], self.near_offset[axis]),
+            lanes.mul_add(lanes.load(boxes.row(self.far[axis])), self.factor[axis], self.far_offset[axis]),
         )
     }
 

@@ -80,6 +80,10 @@ pub trait Lanes: Copy {
     fn if_at_most4(self, a: Self::D, b: Self::D, then: Self::D, otherwise: Self::D) -> Self::D;
     /// `|a|`.
     fn abs4(self, a: Self::D) -> Self::D;
+    /// The sizes of `a` with the signs of `b`.
+    fn copy_sign4(self, a: Self::D, b: Self::D) -> Self::D;
+    /// The signs, one bit each: 1 for numbers that are negative, or -0.
+    fn signs4(self, a: Self::D) -> u32;
     /// `if a > b { a } else { b }`: `b` when either is NaN.
     fn max4(self, a: Self::D, b: Self::D) -> Self::D;
     /// `if a < b { a } else { b }`: `b` when either is NaN.
@@ -240,6 +244,14 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn abs4(self, a: [f64; 4]) -> [f64; 4] {
         a.map(f64::abs)
+    }
+    #[inline(always)]
+    fn copy_sign4(self, a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        each4(a, b, f64::copysign)
+    }
+    #[inline(always)]
+    fn signs4(self, a: [f64; 4]) -> u32 {
+        (0..4).fold(0, |mask, i| mask | (a[i].is_sign_negative() as u32) << i)
     }
     #[inline(always)]
     fn neg4(self, a: [f64; 4]) -> [f64; 4] {

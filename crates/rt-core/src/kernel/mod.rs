@@ -21,7 +21,7 @@ mod task;
 mod tests;
 mod triple;
 
-pub use boxes::{Boxes, Row, SlabRay, at_least, at_most};
+pub use boxes::{Boxes, Row, SlabRay, at_least, at_most, outward_step};
 pub use lanes::{Lanes, PortableLanes, Vectorized};
 pub use level::{Level, level, set_level};
 pub(crate) use memory::{prefetch, prefetch_lines, vec_on_large_pages};

@@ -99,9 +99,7 @@ fn forward<'a>(geometry: &Geometry, rays: &'a [crate::Ray], active: u32) -> Pack
     let within = [crate::Interval::FORWARD; PACKET];
     let (mut side, tile) = (Side::EMPTY, super::Tile::line(0, rays.len()));
     assert!(geometry.frame.enter_together(PortableLanes, rays, &within, &tile, &mut side));
-    let queries = core::array::from_fn(|i| {
-        Nearest::new(within[i], super::super::frame::Window { absolute: side.window[i] }, None)
-    });
+    let queries = core::array::from_fn(|i| Nearest::new(within[i], None));
     Packet { rays, tile, side, queries, active, rings: super::Rings::NONE }
 }
 
@@ -123,7 +121,7 @@ fn rays_side_by_side_are_answered_together() {
         let mut packet = forward(&geometry, &rays, active);
         assert_eq!(packet.search(PortableLanes, &geometry), active, "{spread}");
         for (ray, query) in rays.iter().zip(&packet.queries) {
-            if query.contested().is_none() {
+            if query.contested(|| geometry.frame.window(ray)).is_none() {
                 assert_eq!(query.best(), geometry.nearest(ray, Interval::FORWARD));
             }
         }
@@ -156,7 +154,7 @@ fn halves_are_answered_together() {
         let done = packet.search(PortableLanes, &geometry);
         assert_eq!(done, if few == 16 { active } else { 0xffff }, "{case}");
         for (i, (ray, query)) in rays.iter().zip(&packet.queries).enumerate() {
-            if done >> i & 1 == 1 && query.contested().is_none() {
+            if done >> i & 1 == 1 && query.contested(|| geometry.frame.window(ray)).is_none() {
                 assert_eq!(query.best(), geometry.nearest(ray, Interval::FORWARD));
             }
         }
