@@ -14,8 +14,12 @@ use glam::DVec3;
 /// Starts up to here, in kernel coordinates, are near: less than eight times as far from the centre as any shape.
 const NEAR: f64 = 2.0;
 
+/// Intervals may begin before the start, as far as the ray comes by this along any axis, in kernel coordinates: those of rays that go
+/// on through a surface begin by its error radius before it.
+const BEFORE: f64 = WINDOW;
+
 /// The step of boxes for all of them: see [`Frame::enter`] for the error, that of a parameter and of the start itself.
-const STEP: f64 = outward_step(2.0 * (NEAR + 1.0) * WINDOW + exp2i(-48), NEAR);
+const STEP: f64 = outward_step(2.0 * (NEAR + 1.0) * WINDOW + BEFORE + exp2i(-48), NEAR);
 
 /// Coordinates of directions up to this are moderate, and from one by this: so are their inverses.
 const MOST: f64 = exp2i(60);
@@ -116,7 +120,9 @@ impl Frame {
             & lanes.le4(lanes.splat4(1.0 / MOST), size)
             & lanes.le4(size, lanes.splat4(MOST));
         let long = lanes.le4(lanes.splat4(LEAST), size) & 7;
-        fine == 15 && long != 0 && within.min == 0.0 && 0.0 < within.max
+        let before = lanes.mul4(size, lanes.splat4(within.min * -moderate.scale));
+        let fine = fine & lanes.le4(before, lanes.splat4(BEFORE));
+        fine == 15 && long != 0 && within.min <= 0.0 && 0.0 < within.max
     }
 
     /// The ray ready for the tree; none where it misses the box of the scene.
@@ -188,12 +194,19 @@ mod tests {
             let distance = (way / unit).length();
             let length = exp2i(-exponent(distance) - exponent(unit)) * random.magnitude(-0.3, 1.0);
             let ray = Ray::new(origin, way * length);
-            let t = 1.0 / length;
+            // Some are a little behind the start.
+            let back = if case % 3 == 0 { random.magnitude(-12.0, -7.6) / distance } else { 0.0 };
+            let (place, t) =
+                if back > 0.0 { (origin - way * back, -back / length) } else { (place, 1.0 / length) };
             // A few roundings of the place, of its parameter and of the direction.
             let scale = unit.max(center.abs().max_element()).max(origin.abs().max_element());
             let slack = DVec3::splat(scale * exp2i(-50));
             let here = Aabb::new(place - slack, place + slack);
-            let until = Interval::new(0.0, t * (1.0 + exp2i(-40)));
+            let until = if back > 0.0 {
+                Interval::new(t * 1.25, 1.0)
+            } else {
+                Interval::new(0.0, t * (1.0 + exp2i(-40)))
+            };
             // Beside it: by more than all that is moved outward, and the corners of the box.
             let off = unit * 16.0 * (3.0 + (origin - center).abs().max_element() / unit) * exp2i(-22);
             let across = (way / unit).cross(random.direction()).normalize() * 8.0 * off;
@@ -229,6 +242,9 @@ mod tests {
         assert_eq!(is(o, d, 0.0, 1e-300), Some(true));
         assert_eq!(is(o, d, 1e-300, 1.0), Some(false));
         assert_eq!(is(o, d, -1.0, 1.0), Some(false));
+        assert_eq!(is(o, d, -1e-15, 1.0), Some(true));
+        assert_eq!(is(o, d, -inf, 1.0), Some(false));
+        assert_eq!(is(o, d, -1e-15, 0.0), Some(false));
         assert_eq!(is(o, d, 0.0, 0.0), None);
         assert_eq!(is(o, d, 0.0, f64::NAN), None);
         assert_eq!(is([0.5, -1.0, 20.0], d, 0.0, inf), Some(false));
