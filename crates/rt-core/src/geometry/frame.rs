@@ -3,7 +3,7 @@
 //! A point `x` of the world is `(x - C) * 2^-m` in kernel coordinates, with all bounded shapes in [-1, 1]; `C` is the
 //! median of the shapes' centres, so that a few huge shapes do not take the digits of the others. A ray
 //! keeps its parameter but for an exact factor and a shift: `t' = t * 2^(e - m) - start`, where `2^e` scales the
-//! direction to `max |d_i|` in [1, 2).
+//! direction to `max |d_i|` in [1, 2). Single rays have a shorter way where they are moderate: `geometry::course`.
 
 use super::course::Moderate;
 use super::tile::Tile;
@@ -72,7 +72,7 @@ impl LocalRay {
 /// distance is at most sqrt(3) (|o'| + 1), the size of the shape at most 2 sqrt(3). Two such errors are less than
 /// 2^-26 (|o'| + 1): `absolute` is four times that. The relative part, 2^-30, is for shapes without bounds, whose
 /// scale is unknown here. A window too wide costs time only: those inside are ordered by their refined parameters.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
     pub absolute: f64,
 }
@@ -168,8 +168,8 @@ impl Frame {
     }
 
     /// The box in kernel coordinates, rounded outward: by twice what a rounding to `f32` can lose, which leaves much for the
-    /// half unit of the subtraction. Below the normal numbers of `f32` a coordinate may be off by 2^-150; rays carry an error of
-    /// 2^-97 at least.
+    /// half unit of the subtraction. Below the normal numbers of `f32` a coordinate may be off by 2^-150, far less than
+    /// the steps of rays spare.
     #[inline]
     pub fn outward(&self, bounds: &Aabb) -> ([f32; 3], [f32; 3]) {
         let power = exp2i(-self.exponent);
@@ -202,7 +202,6 @@ impl Frame {
         if !self.inhabited {
             return None;
         }
-        // First, as nothing that follows takes as long.
         let inverse = 1.0 / ray.direction;
         let direction_exponent = exponent(largest(ray.direction));
         let power = direction_exponent - self.exponent;

@@ -4,9 +4,9 @@
 //! rays. A box test may only cull: it never rejects a box that the exact ray passes through.
 //!
 //! Per axis, the parameters at which the ray enters and leaves the slab of a box are `(x - o) / d`. Both ends are moved outward
-//! by a `step`: `o' = o -+ step`. In `f32`, with v = 2^-24, the test is `x * r + c`, `r` being `1 / d` and `c` being `-o' / d`,
-//! each made in `f64` and rounded to nearest. Errors are told as the distance along the axis that makes the same difference, less by
-//! |1 / d|:
+//! by a `step`: for `d > 0`, `o'` is `o + step` at the entry and `o - step` at the exit. In `f32`, with v = 2^-24, the test is
+//! `x * r + c`, `r` being `1 / d` and `c` being `-o' / d`, each made in `f64` and rounded to nearest. What is given to it has |r| from
+//! 2^-60 to 2^100, and no NaN: see `geometry::course`. Errors are told as distances along the axis, that is, divided by |1 / d|:
 //! - The roundings of `r` and, without fused multiply-add, of the product: v |x| each, and |x| <= 1.
 //! - That of `c`: v |o'|.
 //! - That of the sum: v |x - o'|, at most v (1 + |o'|).
@@ -127,8 +127,8 @@ pub struct SlabRay<L: Lanes> {
 }
 
 impl<L: Lanes> SlabRay<L> {
-    /// The ray by its start and one over its direction, by axis, and how far slabs are moved: see [`outward_step`]. The signs of
-    /// the inverse are also given by themselves, by any numbers that have them: they are wanted first.
+    /// The ray by its start and one over its direction, by axis, of a size from 2^-60 to 2^100, and how far slabs are moved: see
+    /// [`outward_step`]. The signs of the inverse are also given by themselves, by any numbers that have them: they are wanted first.
     ///
     /// From the inverse to the test there are a product, a rounding and the copy to all lanes: a ray waits for all of that before
     /// its first node.

@@ -65,6 +65,7 @@ impl Vectorized for Everything {
                 lanes.mul4(a, b),
                 lanes.div4(a, b),
                 lanes.abs4(a),
+                lanes.copy_sign4(a, b),
                 lanes.max4(a, b),
                 lanes.binade4(lanes.abs4(b)),
                 lanes.neg4(a),
@@ -76,7 +77,7 @@ impl Vectorized for Everything {
                 exact.extend(lanes.store4(x).map(bits));
                 exact.extend(lanes.round4(x).map(|x| bits(x.into())));
             }
-            exact.extend([lanes.le4(a, b), lanes.lt4(a, b)].map(u64::from));
+            exact.extend([lanes.le4(a, b), lanes.lt4(a, b), lanes.signs4(a)].map(u64::from));
             // Where the products are exact, and the numbers have such whole parts.
             let tame = |x: f64| if (1e-100..1e100).contains(&x.abs()) { x } else { 1.0 / 3.0 };
             let (a, b) = (four(0).map(tame), four(6).map(tame));
