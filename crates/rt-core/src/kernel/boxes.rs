@@ -17,7 +17,8 @@
 //!   the true ones are in order, these are not equal. A negative entry counts as 0.
 //! - An axis along which the ray moves by less than 2^-100 of what it does along another is treated as if it did by that much. Up to
 //!   the far side of the scene it comes at most 10 along any axis, so this moves it by less than 2^-96, which the step has to spare:
-//!   the slab rejects if `o'` lies outside, else its exit is at least what is spared times 2^100, beyond the scene.
+//!   the slab rejects if `o'` lies outside, else its exit is at least what is spared times 2^100, beyond the scene. So is one along which
+//!   a ray of the short way does not move, by an inverse of 2^100: see `geometry::course`.
 //! - There is no NaN: origins (at most about 8, see `geometry::frame`), `r` (at most 2^100) and their products are finite,
 //!   and no `r` is 0. Rays that nothing is known of have a large step, not an infinite one. Empty boxes are infinite, and
 //!   so are their entries.
